@@ -344,7 +344,7 @@ impl Numbers for ComplexInterval {
 
     crate::numbers::constants_of_intervals!();
 
-    /// One real number inside the rectangle. It does not bound the others.
+    /// One real number inside the rectangle, which bounds nothing.
     fn lane(&self, lane: usize) -> f64 {
         self.real.lane(lane)
     }

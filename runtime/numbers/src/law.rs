@@ -6,7 +6,7 @@
 //! | law | eps |
 //! |---|---|
 //! | elastic | `-2 (P(pi_D grad h) + d_t h) / dh(pi_D grad h)`, so that `H+ - H- = -eps d_t h` |
-//! | restitution(e) | the same with `1 + e` for 2 |
+//! | restitution(e) | the same with `1 + e` in place of 2 |
 //! | newton(e) | `-(1 + e) G / dh(pi_D grad h)`: `G` becomes `-e G` |
 //! | nonholonomic plastic | `-2 rho G / dh(pi_D grad h)` |
 //! | impact plastic | `-G / dh(pi_D grad h)` |

@@ -83,7 +83,7 @@ pub struct Surface {
 pub struct Level {
     /// Index of the constraint.
     pub constraint: usize,
-    /// True if the constraint is an equation of positions, so that the level of every state is 0.
+    /// True if the constraint is declared as an equation of positions: the level is 0 at every state that satisfies it.
     pub is_zero: bool,
 }
 

@@ -1,9 +1,9 @@
 //! The map of a box of states across an impact, to a common time after it.
 //!
-//! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
-//! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
-//! Newton iteration narrows these times to `[t_a, t_b]`. With the impact time `tau(y)` of the motion from `y`, the flow
-//! `phi` before the impact, the flow `psi` after it and the law `R`:
+//! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface to a time
+//! `t_1`. If the gap is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface
+//! once. Interval Newton iteration encloses the times of the impacts in `[t_a, t_b]`. With the impact time `tau(y)` of
+//! the motion from `y`, the flow `phi` before the impact, the flow `psi` after it and the law `R`:
 //!
 //! ```text
 //! P(y) = psi_(t_b - tau) R(tau, phi_tau(y))   is in   P(y_c) + DP(Y) (Y - y_c)

@@ -113,7 +113,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         }
     }
 
-    /// `self b + c`, rounded once.
+    /// `self b + c`, with one rounding to `PARTS` parts.
     #[inline]
     pub(super) fn fused(self, b: Self, c: Self) -> Self {
         let mut sum = Sum::of(&c.parts);
