@@ -53,9 +53,9 @@ pub trait Divergence: System {
 /// `det g dq dv = dq dp`. Impacts by the law `elastic` keep `exp(G) mu_C` as well where the constraints are linear.
 ///
 /// Implemented for models with a proved claim `density: exact`, `density: locally_exact`, or `density = EXPR` where
-/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. If `G` has no closed form, it is an integral. If it is
-/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation
-/// say so.
+/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. If `G` has no closed form, it is computed as an
+/// integral. If `G` is not even determined up to a constant, the trait is not implemented, and the notes in the
+/// model's documentation say so.
 ///
 /// At given parameters both logarithms are determined up to a constant: only their differences between configurations
 /// are meaningful. `G` depends on the choice of the constraint forms, the volume does not.

@@ -28,7 +28,7 @@ pub(super) const FIRSTS: usize = 18;
 /// Maximum number of initial values of a series of an erased system.
 pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 
-/// The storage for the geometric quantities at a state has this number squared of entries.
+/// The square of this number is the number of entries of the storage for the geometric quantities at a state.
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each with its own type.

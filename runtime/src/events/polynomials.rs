@@ -7,8 +7,8 @@ use crate::jet::LENGTH;
 use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
-/// Number of terms that are expanded about the middle of a part at first. The sum of their absolute values bounds the
-/// other terms.
+/// Number of terms that are expanded about the middle of a part at first. The other terms are bounded by the sum of
+/// their absolute values.
 pub(crate) const FEW: usize = 8;
 
 /// Largest sum of these other terms relative to the linear term of the model. Above it, all terms are expanded about

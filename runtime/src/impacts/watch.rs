@@ -37,8 +37,8 @@ const FEW: usize = 8;
 /// The gaps at the start of the next step, and the results for the last one.
 #[derive(Debug, Clone)]
 pub(super) struct Watch<Sys: Impacting> {
-    /// Gaps at the start of the step; 0 for surfaces at hand. Negative only for a surface that does not count or is
-    /// passable.
+    /// Gaps at the start of the step; 0 for surfaces at hand. A gap is negative only if its surface does not count or
+    /// is passable.
     pub(super) gaps: Sys::Gaps,
     /// True for passable surfaces.
     passable: PerSurface<bool, Sys::Gaps>,
