@@ -1,4 +1,4 @@
-"""Inputs that are functions of time and state, evaluated continuously or held for a period; feedback laws in the language."""
+"""Inputs that are functions of time and state, called at every evaluation or held for a period; feedback laws."""
 
 import math
 
