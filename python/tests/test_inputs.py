@@ -1,4 +1,4 @@
-"""Inputs that are functions, called at every evaluation or held for a period, and laws in the language."""
+"""Inputs that are functions of time and state, called at every evaluation or held for a period; feedback laws."""
 
 import math
 
@@ -21,7 +21,7 @@ Cart {
 }
 """
 
-#: The same with the forces written out.
+#: The same model, with expressions in place of the inputs.
 WRITTEN = CART.replace("inputs { u; w; }", "").replace("(u + w)*d(x)", "(-3*x - c*dot(x) + sin(t))*d(x)").replace(
     "power: u*dot(x)", "power: (-3*x - c*dot(x))*dot(x)",
 )
@@ -41,7 +41,7 @@ def test_functions_are_the_forces_that_they_stand_for(cart, integrator):
     np.testing.assert_allclose(run.events["t"], written.events["t"], rtol=1e-9)
     np.testing.assert_allclose(run.q, written.q, rtol=1e-8, atol=1e-9)
     np.testing.assert_allclose(run["power"], written["power"], rtol=1e-7, atol=1e-7)
-    # A number beside a function is held.
+    # An input that is given as a number is constant, also beside one that is a function.
     mixed = cart.simulate(inputs={"u": spring["u"], "w": 0.25}, until=1)
     assert mixed.outcome.reached and mixed.last["x"] != run.last["x"]
 
@@ -64,7 +64,7 @@ def test_values_are_held_for_a_period(cart):
 
 def test_an_impact_within_a_period_changes_no_input(cart):
     run = cart.simulate(inputs={"u": lambda t, q, qdot: 2.0 + t}, period=0.8, until=0.8, state={"x_dot": 1.5})
-    # Acceleration 1 until the impact at x = 1, and after it.
+    # The acceleration is 1 before and after the impact at x = 1.
     s = -1.5 + math.sqrt(1.5**2 + 2)
     [event] = run.events
     assert event["t"] == pytest.approx(s, rel=1e-12)
@@ -89,7 +89,7 @@ def test_a_closed_loop_is_the_model_with_the_law_written_out(cart):
     assert len(run.events) > 1 and run.last == other.last
     names = ["x", "x_dot", "c"]
     np.testing.assert_array_equal(run.jacobian(names), other.jacobian(names))
-    # One law alone leaves the other input to the caller.
+    # With a law for `u` only, `w` is still an input.
     half = cart.with_feedback(u="-3*x - c*dot(x)")
     assert half.inputs == ("w",)
     mixed = half.simulate(inputs={"w": lambda t, q, qdot: math.sin(t)}, until=2, tol=1e-12)

@@ -80,7 +80,7 @@ def test_a_graze_has_no_derivative():
         run.jacobian(["y"])
 
 
-#: Modes with different numbers of coordinates, and a transition that declares the state behind it.
+#: Modes with different numbers of coordinates, and a transition that declares the state after it.
 MIXED = """
     Mixed {
         parameters { e in [0, 1] = 4/5; c = 1/3; }

@@ -41,14 +41,14 @@ def test_notebooks_run_and_draw(path, tmp_path):
     for number, cell in enumerate(cells(path)):
         if cell["cell_type"] == "code":
             shown.append(run("".join(cell["source"]), names, f"{path.name}, cell {number}"))
-        # As in a notebook, a picture belongs to its cell.
+        # As in a notebook, the figures of a cell are complete at its end.
         for figure in map(plt.figure, plt.get_fignums()):
             assert any(axes.lines or axes.images for axes in figure.axes), number
             figure.savefig(Path(PICTURES or tmp_path) / f"{path.stem}{number}.png", dpi=80)
             drawn += 1
         plt.close("all")
     assert drawn >= 2
-    # Models, derivations and verdicts are shown by formulas and tables.
+    # At least one cell shows a model, a derivation or verdicts, as formulas or a table.
     assert any(hasattr(value, "_repr_html_") or isinstance(value, (list, tuple)) for value in shown)
 
 

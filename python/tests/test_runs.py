@@ -53,7 +53,7 @@ def test_impacts_are_a_table(ball):
 
 def test_impacts_that_accumulate_are_an_outcome(ball):
     run = ball.simulate(until=5)
-    # The falls and flights add up to a geometric series.
+    # The durations of the flights after the fall are a geometric series.
     end = 3 * math.sqrt(2 / 9.81)
     assert run.outcome.kind == "zeno" and not run.outcome.reached
     assert run.outcome.details["surface"] == "floor"
@@ -192,7 +192,7 @@ def test_a_parameter_without_default_must_be_given():
 
 @pytest.fixture
 def interrupts():
-    """Python's handler of SIGINT. Python does not install it if a shell has started it in the background."""
+    """Installs Python's handler of SIGINT. A Python that a shell started in the background has none."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)

@@ -1,7 +1,7 @@
 //! Integrals along a run, in particular the action, the integral of the Lagrangian.
 //!
-//! The Lagrangian is evaluated as `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`, which includes terms of `L`
-//! that are linear in the velocities. Impacts take no time and add nothing to an integral.
+//! The Lagrangian is evaluated as `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`. Terms of `L` that are linear in
+//! the velocities are included in `p`. Impacts take no time and add nothing to an integral.
 
 use core::ops::ControlFlow;
 

@@ -12,7 +12,7 @@ use crate::state::StateVector;
 /// Margin of the cubic through the ends of a step whose inner rates are unknown, as a multiple of the cubic's range.
 const NEAR: f64 = 4.0;
 
-/// The end of a chart.
+/// Exit of a coordinate from the interval of its chart, inside a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Exit {
     /// The last fraction of the step inside the chart, and the first outside.

@@ -1,6 +1,7 @@
 //! Interface of a model to tools: names, documentation, parameters, and the view.
 //!
-//! `model!` implements it for every model, so that a tool can list, set and re-derive any of them.
+//! `model!` implements it for every model, so that a tool can list models, set their parameters and report the
+//! quantities derived at a state.
 
 pub use dalembert_numbers::description::{
     Assumption, ConstraintInfo, CoordinateInfo, Description, ModeInfo, ParameterInfo, SurfaceInfo,
@@ -154,7 +155,7 @@ pub struct Initial<V> {
     pub q: V,
     /// Velocities, meaningful where `named` is 1.
     pub qdot: V,
-    /// 1 if the position is declared, 0 if equations of positions among the constraints may determine it.
+    /// 1 if the position is declared, 0 if holonomic constraints may determine it.
     pub placed: V,
     /// 1 if the velocity is declared, 0 if the constraints may determine it.
     pub named: V,

@@ -56,7 +56,8 @@ pub enum Fault {
     },
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
-        /// Index of the component of the state.
+        /// Index of the component of the state, or of its rate; for a gap, the length of a state plus the index of the
+        /// surface.
         component: usize,
     },
 }

@@ -104,7 +104,7 @@ impl<Sys: System, F: Forces<Sys>> VectorField for Driven<'_, Sys, F> {
     }
 }
 
-/// Presents an integrator of a system under forces as an integrator of the system alone. It integrates its own field
+/// Presents an integrator of a system under forces as an integrator of the system itself. It integrates its own field
 /// and ignores the field passed to it.
 pub(crate) struct Along<'a, F, Step> {
     pub(crate) field: &'a F,

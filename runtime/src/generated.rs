@@ -302,7 +302,8 @@ pub trait OverNumbers {
 pub mod certain {
     use crate::numbers::Interval;
 
-    /// True if the condition `margin > 0`, or `margin >= 0` if it is closed, holds on the whole interval; `None` if undecided.
+    /// True if the condition `margin > 0`, or `margin >= 0` if it is closed, holds on the whole interval, false if it
+    /// holds nowhere; `None` if undecided.
     #[inline]
     pub fn holds(margin: Interval, is_closed: bool) -> Option<bool> {
         let (is_true, is_false) = match is_closed {

@@ -1,5 +1,5 @@
-//! Completion of initial states. Positions come first: they satisfy the constraints that are equations of positions.
-//! Then come the velocities of least norm that satisfy all constraints.
+//! Completion of initial states. Positions come first: they are completed to satisfy the holonomic constraints. Then
+//! the velocities are completed to satisfy all constraints.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
@@ -21,9 +21,10 @@ const STEPS: u32 = 48;
 /// At 0, the usual start value, a square has zero slope.
 const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
 
-/// Completes positions. Positions of `q` where `placed` is not 0 are kept. The others come from least-norm Newton steps
-/// from `q` or, if these fail or leave the chart, from 1, -1, 1/4, -1/4, 4 or -4, which prefers positive solutions. If
-/// all positions are placed, `q` is only checked.
+/// Completes positions. Positions of `q` where `placed` is not 0 are kept. The others are found by Newton's iteration
+/// with steps of least Euclidean norm. It starts at `q`. If it fails, or ends outside of the chart, all free positions
+/// start at 1, then at -1, 1/4, -1/4, 4 and -4, so that positive solutions are found first. If `q` satisfies the
+/// constraints already, it is returned unchanged; if all its positions are placed, it is only checked.
 ///
 /// # Errors
 /// [`StateError::OffPosition`] for `q` as given if no solution was found; [`StateError::NotFinite`] for a position that
@@ -64,7 +65,7 @@ pub fn complete_positions<Sys: Constrained>(
     found.ok_or(refused)
 }
 
-/// Result of Newton's iteration from `q`, if it satisfies the equations of positions and lies in the chart.
+/// Result of Newton's iteration from `q`, if it satisfies the holonomic constraints and lies in the chart.
 fn solved_from<Sys: Constrained>(
     system: &Sys,
     t: f64,
@@ -106,9 +107,10 @@ fn solved_from<Sys: Constrained>(
     (is_inside && check_positions(system, t, &q).is_ok()).then_some(q)
 }
 
-/// Completes velocities. Velocities of `qdot` where `named` is not 0 are kept. The others are those of least norm that
-/// satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities, they come
-/// from Newton steps from 1, which prefers positive solutions.
+/// Completes velocities. Velocities of `qdot` where `named` is not 0 are kept. The others are those of least Euclidean
+/// norm, in coordinates, that satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in
+/// the velocities, Newton's iteration starts with all free velocities at 1, so that it tends to find positive
+/// solutions.
 ///
 /// # Errors
 /// [`StateError::OffConstraint`] if the free components cannot satisfy a constraint; [`StateError::NotFinite`] for a

@@ -23,7 +23,7 @@ impl Jets for () {
     const ZERO: Self = ();
 }
 
-/// Storage for the series of several modes. They are used one at a time.
+/// Storage for the series of several modes, of which one is computed at a time.
 impl<A: Jets, B: Jets> Jets for (A, B) {
     const ZERO: Self = (A::ZERO, B::ZERO);
 }

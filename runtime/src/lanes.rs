@@ -19,8 +19,8 @@ use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_s
 /// Largest number of motions that make their steps one by one. With more motions, vector steps are faster.
 const FEW: usize = 2;
 
-/// Largest storage, in bytes, for the series of all lanes. They lie on the stack, and data that exceeds every cache
-/// is slow.
+/// Largest storage, in bytes, for the series of all lanes. The storage lies on the stack, and access to data that
+/// exceeds every cache is slow.
 const LARGEST: usize = 1 << 18;
 
 /// A run to be computed.

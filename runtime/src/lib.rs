@@ -104,7 +104,7 @@
 //! let times: Vec<f64> = impacts.iter().map(|event| event.t).collect();
 //! assert!((times[0] - 2.0).abs() < 1e-13 && (times[1] - 4.0).abs() < 1e-13 && times.len() == 2);
 //!
-//! // A floor that takes a tenth of the speed at each impact: infinitely many of them before t = 20.
+//! // With a floor that takes a tenth of the speed at each impact, the impacts accumulate at t = 20.
 //! let effects = Impacts::declared(&Ball).with_law(0, Law::Restitution(0.9));
 //! let run = Simulation::new(&Ball, integrator, effects).run(0.0, State::new(0.0, 1.0), 30.0, &mut ())?;
 //! assert!(matches!(run.outcome, Outcome::Zeno { t, .. } if (t - 20.0).abs() < 1e-9));

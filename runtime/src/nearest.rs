@@ -30,7 +30,7 @@ pub fn nearest_by_steps<S: Constrained>(
     let mut least = f64::INFINITY;
     for _ in 0..STEPS {
         let (part, _) = worst(system, t, q, &velocity);
-        // Within rounding, a step that does not halve the residual ends the iteration.
+        // A residual that is accepted, and was not halved by the last step, ends the iteration.
         if part <= ROUNDING || part <= ACCEPTED && part > 0.5 * least {
             return Ok(state);
         }

@@ -82,7 +82,8 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
-    /// The gap of an active surface is negative beyond rounding, at the start or after an impact.
+    /// The gap of an active surface is negative beyond rounding: at the start, after an impact, or behind a pole of the
+    /// gap.
     StartsInside {
         /// The surface.
         surface: usize,
@@ -135,7 +136,8 @@ pub enum Outcome {
     NonlinearConstraints,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
-        /// Index of the component of the state. For a gap: the number of components plus the index of the surface.
+        /// Index of the component of the state. For a gap, it is the number of components plus the index of the
+        /// surface.
         component: usize,
     },
     /// The local error stays above the tolerance even in steps that no longer change the time.

@@ -27,7 +27,7 @@ pub struct Policies {
 /// reflected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Split {
-    /// Go on with the first of the decisive points: the refracted one.
+    /// Go on with the refracted motion.
     #[default]
     First,
     /// End with [`Outcome::Ambiguous`](crate::Outcome::Ambiguous).

@@ -151,7 +151,7 @@ fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fa
 }
 
 /// The first constraint whose residual is too large after the projection of the state `before`, so that the projection
-/// has failed. The bound is a thousand thresholds, one twentieth of the bound for admissible initial states.
+/// has failed. The bound is 1024 thresholds, about a seventeenth of the bound for admissible initial states.
 ///
 /// The terms of a constraint provide no scale where all of them vanish. They vanish where the system rests, and where
 /// the constraint forces the velocity in each remaining term to 0, such as `ydot` in `y ydot` for a hanging pendulum.

@@ -20,15 +20,15 @@ pub struct Event<S> {
     pub before: S,
     /// State just after the impact.
     pub after: S,
-    /// True if another surface was hit at the same time. Simultaneous impacts are recorded one by one, in order of
-    /// surface index.
+    /// True if another surface was hit at the same time. Simultaneous impacts are recorded one by one, in the order in
+    /// which they act.
     pub simultaneous: bool,
     /// True for a grazing impact, which may be decided by rounding, or by the local error if the integrator estimates
     /// it.
     pub graze: bool,
 }
 
-/// The state comes to rest on a surface, starts to slide along it, or leaves it (sliding mode).
+/// The state comes to rest on a surface or leaves it, or sliding between two modes begins or ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold<S> {
     /// Time.

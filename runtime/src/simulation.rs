@@ -17,7 +17,7 @@ use crate::record::{Observer, Segment};
 use crate::run::Run;
 use crate::state::StateVector;
 
-/// Default limit of the number of steps of a run. Most systems take more than a day to reach it.
+/// Default limit of the number of steps of a run.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
 
 /// Longest step after an impact, as a multiple of the last flight: shrinking hops get steps of their own size.
@@ -135,7 +135,7 @@ fn has_energy<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> bool {
 
 /// Progress of a run.
 pub(crate) struct Progress<S> {
-    /// True if the integrator has made steps before.
+    /// True if the integrator has been started.
     is_begun: bool,
     /// True if the energy is checked: it is finite at the start, and the steps are of fixed size without an error
     /// estimate.

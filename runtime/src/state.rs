@@ -6,10 +6,10 @@ use nalgebra::SVector;
 
 /// A vector of `f64` components, stored contiguously on the stack.
 ///
-/// Integrators work on the components alone; the system gives them their meaning (see [`System`](crate::System)).
-/// Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of components is part of
-/// its type. Other vectors have a fixed capacity and use as many components as the system declares
-/// ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
+/// To integrators, a vector is a list of components; the system gives them their meaning (see
+/// [`System`](crate::System)). Implemented by nalgebra's `SVector<f64, D>` for every `D`, also 0; its number of
+/// components is part of its type. Other vectors have a fixed capacity and use as many components as the system
+/// declares ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
 ///
 /// # Examples
 ///

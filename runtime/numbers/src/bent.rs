@@ -149,7 +149,7 @@ impl Numbers for Bent {
 
     crate::numbers::constants_of_intervals!();
 
-    /// One number inside the interval of values. It does not bound the others.
+    /// One number inside the interval of values, which bounds nothing.
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
     }

@@ -6,9 +6,9 @@
 //!
 //! Such bounds serve for power series of functions along a step. The arguments are polynomials `p(z)` that stay in
 //! their rectangles for all complex `|z| <= R`. If `|Im f| <= h` there and `f` is real on the real axis, coefficient
-//! `k >= 1` of its series is at most `2 h / R^k` (Borel and Caratheodory). Heights and rounding errors of results are
-//! at most proportional to the heights of the arguments: if all heights shrink by a factor, the bounds shrink by at
-//! least this factor.
+//! `k >= 1` of its series is at most `2 h / R^k` (Borel and Caratheodory). The heights of results, and the rounding
+//! errors of all coefficients but the constant one, are at most proportional to the heights of the arguments: if all
+//! heights shrink by a factor, these bounds shrink by at least this factor.
 //!
 //! Reference: E. C. Titchmarsh, *The Theory of Functions* (1939), section 5.5.
 
@@ -18,8 +18,8 @@ use crate::interval::Interval;
 use crate::math;
 use crate::numbers::Numbers;
 
-/// Rounding of the sums of up to 33 products by which a recurrence computes a coefficient of an operation's series,
-/// relative to the sum of their absolute values.
+/// Bound of the rounding error of a sum of up to 33 products, relative to the sum of their absolute values. Recurrences
+/// compute every coefficient of a series by such sums.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Ratio of the sum of the coefficients of a series to the bound of the function. The function is bounded on a disk,
@@ -72,8 +72,8 @@ impl ComplexInterval {
         degree: NO_POLYNOMIAL,
     };
 
-    /// Least ratio of the radius of the disk on which functions are bounded to the length of the step, for bounds of
-    /// rounding errors.
+    /// The bounds of rounding errors hold if the radius of the disk on which functions are bounded is at least this
+    /// multiple of the length of the step.
     pub const LEAST_RATIO: f64 = 1.5;
 
     /// A quantity that is a polynomial of time along the step. Its degree counts as 1.
@@ -219,8 +219,8 @@ impl ComplexInterval {
         })
     }
 
-    /// `f(x) cosh y + i g(x) sinh y`, from the values of `f` and `g` on the real axis and bounds of both hyperbolic
-    /// functions.
+    /// `f(x) cosh y + i g(x) sinh y`, from the values of `f` and `g` on the real axis and bounds of `cosh y` and
+    /// `sinh y`.
     #[inline(always)]
     fn wave(self, [real, across]: [Interval; 2], [cosh, sinh]: [f64; 2]) -> Self {
         self.analytic(Analytic {
@@ -232,14 +232,16 @@ impl ComplexInterval {
         })
     }
 
-    /// `f(x) cos y + i g(x) sin y`, from the values of `f` and `g` on the real axis, which bound `|f'|` as well.
+    /// `f(x) cos y + i g(x) sin y`, from the values of `f` and `g` on the real axis. The larger of `|f|` and `|g|`
+    /// bounds the derivatives.
     fn turning(self, [real, across]: [Interval; 2]) -> Self {
         if self.is_steady() {
             return Self::steady(real);
         }
         let turn = Interval::new(-self.height, self.height);
         let slope = real.magnitude().max(across.magnitude());
-        // A series and its inverse, without their constant terms, are at most the exponential of the sway.
+        // Divided by its constant term, the series of an exponential is at most the exponential of the sway. Its
+        // inverse has the same bound.
         let growth = math::exp(2.0 * self.sway()) * UP;
         self.analytic(Analytic {
             real: real * turn.cos(),
@@ -342,12 +344,12 @@ impl Numbers for ComplexInterval {
 
     crate::numbers::constants_of_intervals!();
 
-    /// One real number inside the rectangle. It does not bound the others.
+    /// One real number inside the rectangle, which bounds nothing.
     fn lane(&self, lane: usize) -> f64 {
         self.real.lane(lane)
     }
 
-    /// The sign, if the number is real.
+    /// The sign, if the number does not vary along the step.
     fn is_below_zero(&self) -> Option<bool> {
         match self.is_steady() {
             true => self.real.is_below_zero(),

@@ -111,8 +111,8 @@ pub struct Description {
     pub outputs: Held<[&'static str]>,
     /// Indices of the outputs that are integrals along a run. At a state, their function returns the integrand.
     pub integrals: Held<[usize]>,
-    /// The scenes. The first one is `all`, the model itself. For a model with modes, each mode is a scene of `derive`
-    /// and `check`; a visitor of scenes does not see these.
+    /// The scenes. The first one is `all`, the model itself. For a model with modes, each mode is listed as a scene,
+    /// for `derive` and `check`; visitors of scenes do not visit modes.
     pub scenes: Held<[&'static str]>,
     /// The modes; empty for a model without modes.
     pub modes: Held<[ModeInfo]>,

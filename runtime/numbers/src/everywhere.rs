@@ -1,7 +1,7 @@
 //! Numbers at all states at once: the interval of all values, and a flag for sharp variation.
 //!
-//! A function of the state is sharp if it may vary strongly within a range of its arguments that is small beside the
-//! range in which the arguments vary. Polynomials of low degree, sines and cosines of the state are not sharp. A
+//! A function of the state is sharp if it may vary strongly within a small fraction of the range in which its arguments
+//! vary. Polynomials of low degree, sines and cosines of the state are not sharp. A
 //! quotient is not sharp while its denominator varies by a small factor only, as in the inverse of a moderate inertia.
 //! The same holds for powers of such a number.
 
@@ -10,8 +10,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::interval::Interval;
 use crate::numbers::Numbers;
 
-/// Largest ratio of values that a divisor or the base of a power may have without being sharp. The ratios of the
-/// factors of a product multiply.
+/// Largest ratio of the absolute values of a divisor, or of the base of a power, that does not count as sharp. The
+/// ratios of the factors of a product multiply.
 const MOST_RATIO: f64 = 4.0;
 
 /// Largest number of varying factors of a product that does not count as sharp.
@@ -37,9 +37,9 @@ pub struct Everywhere {
     /// True if the number depends on the state.
     varies: bool,
     is_sharp: bool,
-    /// Largest number of varying factors of a product in it.
+    /// Largest number of varying factors that one product of the expression has.
     factors: u32,
-    /// Product of the ratios (largest to smallest absolute value) of divisors and bases of powers in such a product.
+    /// Largest product of the ratios (largest to smallest absolute value) of the divisors and bases in one product.
     ratio: f64,
 }
 
@@ -79,7 +79,7 @@ impl Everywhere {
         }
     }
 
-    /// The power with this exponent, a whole number that is not negative; `values` are its values.
+    /// The power with an exponent that is a whole number and not negative; `values` are the values of the power.
     fn raised(self, values: Interval, exponent: f64) -> Self {
         // NOTE: the conversion to `u32` saturates.
         let factors = self.factors.saturating_mul(exponent as u32);
@@ -182,7 +182,7 @@ impl Numbers for Everywhere {
 
     crate::numbers::constants_of_intervals!();
 
-    /// One number of the interval. It does not bound the others.
+    /// One number of the interval, which bounds nothing.
     fn lane(&self, lane: usize) -> f64 {
         self.values.lane(lane)
     }

@@ -1,7 +1,7 @@
 //! References to constants, or owned values of forms loaded at run time.
 //!
-//! This is the only file of the runtime that names an owner on the heap, with the feature `std` only. Nothing in
-//! runtime and numbers creates one.
+//! No other file of the runtime names a type that owns memory on the heap; this one does so with the feature `std`
+//! only. Neither the runtime nor this package makes an owned value.
 
 use core::fmt;
 use core::ops::Deref;

@@ -13,8 +13,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::math;
 use crate::numbers::Numbers;
 
-/// Unit in the last place of 1. For every normal number it bounds the ratio of its unit in the last place to the
-/// number.
+/// Unit in the last place of 1. It bounds the unit in the last place of every normal number, relative to the number.
 const ULP: f64 = f64::EPSILON;
 
 /// Relative widening of an elementary function's value: at least four units in the last place.
@@ -144,7 +143,7 @@ impl Interval {
         widest(function(self.lo), function(self.hi), CALL)
     }
 
-    /// The intersection with `[lo, hi]`, which must not be empty.
+    /// The intersection with `[lo, hi]`. It must not be empty.
     #[must_use]
     #[inline(always)]
     pub fn within(self, lo: f64, hi: f64) -> Self {
@@ -157,7 +156,8 @@ impl Interval {
         self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY
     }
 
-    /// `1 / a`. With 0 as an end the result is infinite on one side; with 0 inside it is [`Interval::WHOLE`].
+    /// `1 / a`. With 0 as an end the result is infinite on one side; with 0 inside, and for 0 itself, it is
+    /// [`Interval::WHOLE`].
     #[must_use]
     #[inline(always)]
     pub fn inverse(self) -> Self {
@@ -176,7 +176,7 @@ impl Interval {
 
     /// An enclosure of the range of a sine or cosine with a maximum at `crest`.
     fn wave(self, function: fn(f64) -> f64, crest: f64) -> Self {
-        // The limit is a little less than a turn, because extreme values near the ends count as met.
+        // A longer interval contains both extreme values, or nearly so.
         let is_short = self.magnitude() <= FAR && self.hi - self.lo <= 6.2;
         if !is_short {
             return Self::new(-1.0, 1.0);
@@ -357,7 +357,7 @@ impl Numbers for Interval {
         Self::of(of_lane(0))
     }
 
-    /// A number in the interval. It tells nothing about the other numbers.
+    /// The middle of the interval, which bounds nothing.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.middle()
@@ -419,7 +419,8 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// The whole line if `sign` may have either sign, because no series exists across a kink.
+    /// The absolute value if `sign` is the number itself. Any other number, such as a higher coefficient of a series,
+    /// becomes the whole line where `sign` may have either sign, because no series exists across a kink.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
@@ -604,7 +605,7 @@ pub(crate) mod tests {
     }
 
     impl Enclosed {
-        /// Paths in its domain in both directions, from single points to all of it.
+        /// Paths in its domain in both directions, from single points to the whole domain.
         pub(crate) fn stretches(&self) -> impl Iterator<Item = Sample> + '_ {
             let [lo, hi] = self.domain;
             (0..=24).flat_map(move |start| {

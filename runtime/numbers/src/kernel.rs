@@ -36,7 +36,7 @@ pub enum Kernel {
     Restore,
     /// The values of integrable constraints.
     Levels,
-    /// The sizes of the levels whose value is declared.
+    /// The sums of the absolute values of the terms of the levels; 0 for levels that are not declared to be 0.
     LevelScales,
     /// The change of positions that removes an excess of levels: n.
     LevelCorrection,
@@ -79,7 +79,7 @@ pub enum Kernel {
     LogDensity,
     /// The logarithm of the density of the invariant volume, without the part given as an integral.
     LogVolume,
-    /// The gradient of the function that is integrated: n.
+    /// The gradient of the part of these logarithms that is given as an integral: n.
     DensityGradient,
     /// The powers that change the energy, one per cause.
     Powers,
@@ -87,7 +87,7 @@ pub enum Kernel {
     Outputs,
     /// The point of the view.
     ViewPath,
-    /// The region of the view.
+    /// The function whose sign defines the region of the view.
     ViewRegion,
     /// The declared initial positions, then velocities: 2 n.
     Initial,

@@ -6,7 +6,7 @@
 //! | law | eps |
 //! |---|---|
 //! | elastic | `-2 (P(pi_D grad h) + d_t h) / dh(pi_D grad h)`, so that `H+ - H- = -eps d_t h` |
-//! | restitution(e) | the same with `1 + e` for 2 |
+//! | restitution(e) | the same with `1 + e` in place of 2 |
 //! | newton(e) | `-(1 + e) G / dh(pi_D grad h)`: `G` becomes `-e G` |
 //! | nonholonomic plastic | `-2 rho G / dh(pi_D grad h)` |
 //! | impact plastic | `-G / dh(pi_D grad h)` |
@@ -53,7 +53,8 @@ impl Law {
         !self.is_map() && !matches!(self, Self::Stop)
     }
 
-    /// The names of the laws in the language and on the command line. True for laws with a coefficient.
+    /// The names of the laws in the language and on the command line, each with a flag: true for a law with a
+    /// coefficient.
     pub const NAMES: [(&'static str, bool); 8] = [
         ("elastic", false),
         ("restitution", true),
@@ -81,7 +82,7 @@ impl Law {
     }
 
     /// Amount that the law subtracts from the gap rate; NaN for laws without an impulse. `e`: the coefficient of the
-    /// law. `scalars`: the first five numbers of a contact, in order.
+    /// law. `scalars`: the first five values of [`Kernel::Contact`](crate::Kernel::Contact), in order.
     #[inline(always)]
     pub fn taken<L: Numbers>(self, e: L, scalars: &[L; 5]) -> L {
         let [gap_rate, constrained_rate, surface_rate, constrained, free] = *scalars;
@@ -99,7 +100,8 @@ impl Law {
     }
 
     /// Adds the impulse of the law to `motion`, the momenta or quasi-velocities. `e`: the coefficient of the law.
-    /// `collision`: the five numbers of a contact in order, followed by the direction of the impulse.
+    /// `collision`: the values of [`Kernel::Contact`](crate::Kernel::Contact), five numbers and the direction of the
+    /// impulse.
     pub fn strike<L: Numbers>(self, e: L, collision: &[L], motion: &mut [L]) {
         let (scalars, direction) = collision.split_at(5);
         let scalars = core::array::from_fn(|i| scalars[i]);

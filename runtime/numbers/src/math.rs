@@ -1,9 +1,9 @@
 //! Elementary functions as generated code calls them: correctly rounded with `strict`, the platform's with `std`, pure
 //! Rust otherwise.
 //!
-//! Everything else in this crate is addition, multiplication, division and square root, which are correctly rounded by
-//! definition, in the order in which they are written. Rust never contracts them, and [`mul_add`] does so only without
-//! `strict`. With `strict` a run therefore has the same bits on every machine.
+//! All other operations of a run are additions, multiplications, divisions and square roots, which are correctly
+//! rounded by definition. Rust executes them in the order in which they are written and never contracts them;
+//! [`mul_add`] contracts only without `strict`. With `strict` a run therefore has the same bits on every machine.
 
 macro_rules! elementary {
     ($($name:ident($($argument:ident),+) = $platform:ident, $rust:ident, $rounded:ident;)*) => {$(
@@ -84,8 +84,8 @@ pub fn abs(x: f64) -> f64 {
     f64::abs(x)
 }
 
-/// The larger of two numbers; NaN if one of them is NaN. `f64::max` drops NaN, so that the largest of several errors
-/// hides one that is undefined.
+/// The larger of two numbers; NaN if one of them is NaN. (`f64::max` drops NaN: the largest of several errors would
+/// hide an undefined one.)
 #[inline(always)]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }

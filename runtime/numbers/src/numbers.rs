@@ -1,8 +1,8 @@
 //! The numbers of kernels and Taylor series: one number, or several in SIMD lanes.
 //!
 //! Generated series are written once, over [`Numbers`]. With `f64` they are the series of one motion. With several
-//! lanes they are the series of one motion in each lane. Every lane has the same bits as `f64`, independent of the
-//! others.
+//! lanes they are the series of one motion in each lane. Every lane has the same bits as a computation over `f64`,
+//! independent of the other lanes.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -175,7 +175,7 @@ pub trait Numbers:
     #[must_use]
     fn ln(self) -> Self;
 
-    /// The natural logarithm of `1 + self`, exact for small numbers.
+    /// The natural logarithm of `1 + self`, without loss of digits for small numbers.
     #[must_use]
     fn log1p(self) -> Self;
 

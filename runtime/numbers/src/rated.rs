@@ -113,7 +113,7 @@ impl Numbers for Rated {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number in the interval of values. It implies nothing for the rest of the stretch.
+    /// A number in the interval of values, which bounds nothing.
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)

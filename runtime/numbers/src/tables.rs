@@ -11,14 +11,14 @@ pub enum Form {
     Global,
     /// Positions and quasi-velocities.
     Reduced,
-    /// Positions alone, of a first-order system.
+    /// Positions only: the model is a first-order system.
     FirstOrder,
 }
 
 /// Sizes of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimensions {
-    /// Components of a state; one more than those of the longest mode for a model with modes.
+    /// Components of a state. In a model with modes, a state has room for that of every mode, and one more component.
     pub state: usize,
     /// Coordinates, of all modes together.
     pub coordinates: usize,
@@ -83,7 +83,7 @@ pub struct Surface {
 pub struct Level {
     /// Index of the constraint.
     pub constraint: usize,
-    /// True if the constraint is an equation of positions, so that the level of every state is 0.
+    /// True if the constraint is declared as an equation of positions: the level is 0 at every state that satisfies it.
     pub is_zero: bool,
 }
 

@@ -1,9 +1,9 @@
 //! Taylor models: functions along a stretch of motion, as a cubic and bounds of the remainder.
 //!
-//! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)`
-//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a
+//! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] with the cubic `p` holds every
+//! function `p(s) + r(s)` whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a
 //! function `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. Halving the stretch divides the error by
-//! sixteen: one model locates the root of a gap during a flight, for which interval arithmetic needs a dozen stretches.
+//! sixteen. One model locates the root of a gap during a flight; interval arithmetic needs a dozen stretches for this.
 //!
 //! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International
 //! Journal of Pure and Applied Mathematics 6 (2003).
@@ -201,7 +201,7 @@ impl TaylorModel {
         }
     }
 
-    /// The product with a constant.
+    /// The product with a number that does not change along the stretch.
     #[inline(always)]
     fn scaled(self, factor: Self) -> Self {
         let (number, doubt) = (factor.powers[0], factor.error);
@@ -223,7 +223,7 @@ impl TaylorModel {
         }
     }
 
-    /// The inverse of a constant.
+    /// The inverse of a number that does not change along the stretch.
     #[inline(always)]
     fn inverted(self) -> Self {
         let (number, doubt) = (self.powers[0], self.error);
@@ -316,8 +316,8 @@ impl TaylorModel {
         }
     }
 
-    /// Model from enclosures of the values, of the rates and of the value in the middle: linear, or constant if its
-    /// error is smaller.
+    /// Model from enclosures of the values, of the rates and of the value in the middle: a linear model, or a constant
+    /// one if its error is smaller.
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -611,8 +611,8 @@ impl Numbers for TaylorModel {
             summed([sine, cosine, -0.5 * sine, -cosine / 6.0]),
             summed([cosine, -sine, -0.5 * cosine, sine / 6.0]),
         ];
-        // Next to an extremum of one function its model is not sharp, but the other is. If neither is, the stretch is
-        // too long for the series.
+        // Next to an extremum of the sine, its model is not sharp, but that of the cosine is; and vice versa. If neither
+        // model is sharp, the stretch is too long for the series.
         if !sines.is_sharp() && !cosines.is_sharp() {
             sines = sines.or_closer(self.enclosed(Rated::sin, Interval::sin));
             cosines = cosines.or_closer(self.enclosed(Rated::cos, Interval::cos));
@@ -707,7 +707,7 @@ impl Numbers for TaylorModel {
         self.function(
             |c, radius| {
                 let power = libm::exp(c);
-                // Sums of arguments are rounded by less than 1e-12.
+                // Rounding changes the sum `c + radius` by less than 1e-12.
                 let most = (1.0 + 1e-9) * libm::exp(c + radius) + f64::MIN_POSITIVE;
                 Expansion {
                     terms: [power, power, 0.5 * power, power / 6.0],
@@ -747,7 +747,7 @@ impl Numbers for TaylorModel {
         self.function(
             |c, radius| {
                 let inverse = 1.0 / (1.0 + c);
-                // The sum is rounded before the radius is subtracted.
+                // A lower bound of `1 + c`, which is a rounded sum.
                 let fourth = match least((1.0 + c) * (1.0 - ROUNDING), radius) {
                     Some(least) => 0.25 / (least * least * least * least),
                     None => f64::INFINITY,
@@ -810,7 +810,7 @@ impl Numbers for TaylorModel {
                         -tangent * first,
                         first * (3.0 * tangent * tangent - 1.0) / 3.0,
                     ],
-                    // `t (2 - 3 t^2) (1 - t^2) / 3` for `t` up to 1.
+                    // Bound of `|t (2 - 3 t^2) (1 - t^2)| / 3`, with `t = tanh x`.
                     fourth: 0.26,
                 }
             },

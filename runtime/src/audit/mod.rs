@@ -4,9 +4,9 @@
 //! An audit observes a run and does not rely on the events that the run reports. It encloses all values of every gap
 //! along every step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). It shares no
 //! code with event location except the functions of the model. A claim that it cannot prove within its budget is
-//! reported as a [`Finding`], in the same way as a surface that was passed.
+//! reported as a [`Finding`], as an error is.
 //!
-//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative,
+//! Limits: where the gap of a surface may be negative, the conditions (`when`) of a system written by hand are sampled,
 //! unless the system encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while
 //! it does.
 //!
@@ -52,13 +52,13 @@ use crate::state::StateVector;
 use motion::{Motion, ROUNDING};
 use scan::Scan;
 
-/// Tolerance of the gap at a recorded impact, in multiples of its rounding.
+/// Tolerance of the gap at a recorded impact, in multiples of the gap's rounding error.
 const NEAR: f64 = 64.0;
 
 /// The same tolerance for simultaneous impacts, where rounding errors of earlier steps add up along the flight.
 const BESIDE: f64 = 64.0 * NEAR;
 
-/// Allowed decrease of a gap in every step along a surface, as a fraction of its rounding.
+/// Allowed decrease of a gap in every step along its surface, as a fraction of the gap's rounding error.
 const DRIFT: f64 = 1.0 / 16.0;
 
 /// Reason why a run is not confirmed. Only the first reason is kept.
@@ -100,7 +100,7 @@ pub struct Audit<'a, Sys: Impacting> {
     passable: PerSurface<bool, Sys::Gaps>,
     /// Surfaces that hold the motion.
     held: PerSurface<bool, Sys::Gaps>,
-    /// Size of negative gaps that rounding errors of the motion up to here allow; 0 away from the surface.
+    /// Largest size of a negative gap that rounding errors of the motion so far explain; 0 away from the surface.
     slack: Sys::Gaps,
     motion: Motion<Sys::State>,
     finding: Option<Finding>,
@@ -171,7 +171,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         };
     }
 
-    /// Records the surface of a step that may be met first.
+    /// Records that a surface may be met, unless one that may be met earlier is recorded.
     fn note_met(&mut self, surface: usize, t: f64) {
         match self.finding {
             Some(Finding::MayBeMet { t: earlier, .. }) if earlier <= t => {}
@@ -179,7 +179,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         }
     }
 
-    /// Enclosure of the gap of a surface at a state, including the rounding of the motion so far.
+    /// Enclosure of the gap of a surface at a state, including rounding errors of the dense output.
     fn gap_near(&self, surface: usize, t: f64, state: &Sys::State) -> Interval {
         let component = |i: usize| {
             let value = state.as_slice()[i];

@@ -93,8 +93,8 @@ impl<S: StateVector> Motion<S> {
         value.widened(self.doubts[0].as_slice()[i])
     }
 
-    /// Enclosure of component `i` on a part of the step, and of its derivative by the fraction of the step. On a single
-    /// point the derivative is 0.
+    /// Enclosure of component `i` on a part of the step, and of its derivative with respect to the fraction of the
+    /// step. On a single point the derivative is 0.
     pub(super) fn component(&self, i: usize, [from, to]: [f64; 2]) -> Rated {
         if from == to {
             return Rated::steady(self.component_at(i, from));

@@ -2,7 +2,7 @@
 //!
 //! A step is divided into parts. On each part the states and their rates are enclosed, and with them the values and
 //! rates of every gap. A surface is certainly not met in a part in which its gap is positive, in which it does not
-//! count, or in which its gap rises from a surface just left. A passable surface is met from above only.
+//! count, or in which its gap rises and is not negative at the start. A passable surface is met from above only.
 
 use super::frame::Bounds;
 use super::lost::Reason;
@@ -55,8 +55,8 @@ pub(super) struct Course<'f, 'a, Sys: Variational> {
 }
 
 impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
-    /// Motions from the box `from` at the times `start`. The tube must contain them for `unit`. The series has degree
-    /// `order`.
+    /// Motions from the box `from` at the times `start`. The tube must contain them for the time `unit`. The series
+    /// has degree `order`.
     pub(super) fn new(
         field: &'f Field<'a, Sys>,
         from: &Bounds<Sys::State>,
@@ -182,7 +182,8 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
         Ok(sides)
     }
 
-    /// Sides of all surfaces after a part of a step, from those at its start; or a surface that may be met.
+    /// Sides of all surfaces after a part of a step, from those at its start; or a surface that may be met, with the
+    /// reason. The surface `except` is not examined and keeps its side.
     pub(super) fn passed_in(
         &self,
         part: Option<Part<Sys::State>>,

@@ -1,17 +1,17 @@
 //! The map of a box of states across an impact, to a common time after it.
 //!
-//! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
-//! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
-//! Newton iteration narrows these times to `[t_a, t_b]`. With the impact time `tau(y)` of the motion from `y`, the flow
-//! `phi` before the impact, the flow `psi` after it and the law `R`:
+//! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface to a time
+//! `t_1`. If the gap is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface
+//! once. Interval Newton iteration encloses the times of the impacts in `[t_a, t_b]`. With the impact time `tau(y)` of
+//! the motion from `y`, the flow `phi` before the impact, the flow `psi` after it and the law `R`:
 //!
 //! ```text
 //! P(y) = psi_(t_b - tau) R(tau, phi_tau(y))   is in   P(y_c) + DP(Y) (Y - y_c)
 //! DP q = Dpsi (DR (v + f^- tau') + d_t R tau' - f^+ tau'),   v = Dphi q,   tau' = -dh(v) / (dh(f^-) + d_t h)
 //! ```
 //!
-//! along each axis `q` of the frame: the saltation matrix between the derivatives of the two flows. The centre alone
-//! is mapped to an enclosure as narrow as rounding allows.
+//! along each axis `q` of the frame: the saltation matrix between the derivatives of the two flows. The centre `y_c` is
+//! mapped separately; the enclosure of its image is as narrow as rounding allows.
 //!
 //! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic
 //! solution of a system of differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics
@@ -35,7 +35,7 @@ const TRIALS: u32 = 8;
 /// Maximum number of Newton steps.
 const STEPS: u32 = 6;
 
-/// Least length of time in units of rounding.
+/// Least length of the motion across a surface, in rounding errors of the time.
 const UNITS: f64 = 32.0;
 
 /// Enclosures of the states at an impact, and of the motion after it.
@@ -150,7 +150,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Err(graze)
     }
 
-    /// Motion for one unit of time.
+    /// Motion from `t` for the time `unit`.
     fn over(
         surfaces: &'s Surfaces<'f, 'a, Sys>,
         surface: usize,
@@ -219,7 +219,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         (!gap.is_whole()).then_some(gap)
     }
 
-    /// Enclosure of the rate of the gap on a part of the time.
+    /// Enclosure of the rate of the gap during `units`.
     fn rate_in(&self, units: Interval) -> Option<Interval> {
         let part = self.all.part(units)?;
         let rate = self.surfaces.field.gaps(&part)?.as_slice()[self.surface].rate * self.unit;

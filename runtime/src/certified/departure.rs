@@ -69,8 +69,8 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
     }
 }
 
-/// Enclosure of the derivatives of the flow along directions, after `units` of time, for all states of a box with a
-/// tube.
+/// Enclosure of the derivatives of the flow along directions, after `units` of time, for all motions from a box that
+/// stay in a tube.
 pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
     [from, tube, along]: [&Bounds<Sys::State>; 3],

@@ -1,7 +1,7 @@
 //! Steps of certified motion.
 //!
-//! A step from the set `Y = y + Q r` uses a tube `B` that contains every motion from `Y` until the end of the step,
-//! because `Y + [0, h] f([t, t + h], B)` lies inside `B`. Then
+//! A step from a set `Y` with the centre `y` uses a tube `B` that contains every motion from `Y` until the end of the
+//! step, because `Y + [0, h] f([t, t + h], B)` lies inside `B`. Then
 //!
 //! ```text
 //! y(t + h) is in  sum_(k<p) h^k c_k(y)  +  h^p c_p(B)  +  J(Y) (Y - y)
@@ -239,8 +239,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         self.field.tube(hull, times, during)
     }
 
-    /// The image of the centre at the end of a step, with the remainder. The allowed remainder is the rounding of the
-    /// state plus a small fraction of the width of the box.
+    /// The image of the centre at the end of a step, with the remainder. The allowed remainder is a fraction of the
+    /// state ([`CertifiedFlow::with_remainder`]) plus a small fraction of the width of the box.
     fn moved(&self, tube: &Bounds<Sys::State>, length: Interval) -> Option<Moved<Sys::State>> {
         let now = Interval::point(self.t);
         let point = Bounds::point(&self.frame.centre);
@@ -262,8 +262,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         bounds.is_finite().then_some(Moved { bounds, excess })
     }
 
-    /// Enclosures, over the hull, of the derivatives of a step's Taylor sum with respect to the initial state, along the axes of the
-    /// frame.
+    /// Enclosures, over the hull, of the derivatives of a step's Taylor sum with respect to the initial state, along
+    /// the axes of the frame.
     fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
         let now = Interval::point(self.t);
         let n = hull.count();

@@ -111,7 +111,7 @@ impl<Sys: Variational> Matrix<Sys> {
         Self::of(&columns::<Sys>(n))
     }
 
-    /// Number of rows, equal to that of columns.
+    /// Number of rows, which is also the number of columns.
     pub(super) fn count(&self) -> usize {
         self.lo.as_ref().first().map_or(0, StateVector::count)
     }

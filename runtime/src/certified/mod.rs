@@ -8,13 +8,14 @@
 //! | `series.rs` | tubes, and series with remainder, of motions and of their derivatives |
 //! | `course.rs` | gaps along a step: surfaces that are certainly not met |
 //! | `crossing.rs` | the impact of all motions of a box: times, places, and the states at one time after it |
-//! | `departure.rs` | the motions after it, and derivatives of states along them |
+//! | `departure.rs` | the motions after an impact, and derivatives of states along them |
 //! | `run.rs` | smooth motion and impacts in turn |
 //! | `orbit.rs` | proofs that periodic orbits exist and attract |
 //! | `lost.rs` | end of certified motion, and its reason |
 //!
-//! The certificate is for the motion of the model's equations, surfaces and laws, with its parameters as doubles or
-//! in ranges about them. Intervals of coordinates (charts) are not checked, and no surface holds the motion.
+//! The certificate holds for the equations, surfaces and laws of the model, with parameters that are doubles or ranges.
+//! Intervals of coordinates (charts) are not checked. Contact is not certified: a motion that a surface may hold is
+//! [`Lost`].
 //!
 //! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary
 //! value problems*, in Computational Ordinary Differential Equations (1992); N. S. Nedialkov, K. R. Jackson, G. F.

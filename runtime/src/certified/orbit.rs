@@ -8,12 +8,12 @@
 //! ```
 //!
 //! there is exactly one fixed point in `Z` if `K` lies inside `Z`, and it lies in `K` (Krawczyk). `DF` is the
-//! derivative in all directions of the state. It vanishes along the motion, as all states of one motion have the same
-//! image. The method fails if `DF` has the eigenvalue 1: for example if a quantity is conserved, or if the system does
-//! not depend on a coordinate.
+//! derivative in all directions of the state. It vanishes in the direction of the motion, as all states of one motion
+//! have the same image. The method fails if `DF` has the eigenvalue 1: for example if a quantity is conserved, or if
+//! the system does not depend on a coordinate.
 //!
-//! Reference: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4 (1969); R. E. Moore,
-//! R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
+//! References: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4
+//! (1969); R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
 
 use core::fmt;
 
@@ -118,8 +118,8 @@ impl<Sys: Variational> CertifiedOrbit<Sys> {
         self.point.at(i)
     }
 
-    /// Enclosure of entry `(i, j)` of the derivative of the map: component `i` of the image with respect to component `j` of the
-    /// state.
+    /// Enclosure of entry `(i, j)` of the derivative of the map: component `i` of the image with respect to component
+    /// `j` of the state.
     pub fn derivative(&self, i: usize, j: usize) -> Interval {
         self.derivative.at(i, j)
     }
@@ -137,7 +137,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         }
     }
 
-    /// Counts this many returns, 1 or more, as one application of the map.
+    /// Counts this many returns as one application of the map; 0 means 1.
     #[must_use]
     pub fn with_returns(mut self, returns: u32) -> Self {
         self.returns = returns.max(1);
@@ -298,8 +298,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
     }
 }
 
-/// Bound of the spectral radius of every matrix in the enclosure: `|M^k|^(1/k)` for powers of two `k`, the smallest of
-/// them.
+/// Bound of the spectral radius of every matrix in the enclosure: the smallest `|M^k|^(1/k)` among powers of two `k`.
 fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
     let mut power = *matrix;
     let mut bound = norm(&power);

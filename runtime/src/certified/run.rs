@@ -52,9 +52,9 @@ impl<Sys: Variational> CertifiedImpact<Sys> {
 
 /// A box of states that is propagated through time and impacts.
 ///
-/// Every surface is enclosed along every step. An impact is certified if every motion of the box meets the same
-/// surface once, transversally, and no other surface at about the same time. The declared law, or the one chosen for
-/// the run, is then applied to all of them. A condition that cannot be proved ends the run as [`Lost`], which names
+/// The gap of every surface is enclosed along every step. An impact is certified if every motion of the box meets the
+/// same surface once, transversally, and no other surface at about the same time. The declared law, or the one chosen
+/// for the run, is then applied to all motions. A condition that cannot be proved ends the run as [`Lost`], which names
 /// it.
 ///
 /// ```

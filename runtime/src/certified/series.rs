@@ -24,7 +24,7 @@ const TRIALS: u32 = 6;
 /// Relative enlargement of a trial tube over the last one.
 const ROOM: f64 = 0.1;
 
-/// A system with boxes of parameters.
+/// A system with an interval for each parameter.
 pub(super) struct Field<'a, Sys: Variational> {
     pub(super) system: &'a Sys,
     parameters: Sys::Parameters<Interval>,
@@ -234,7 +234,7 @@ pub(super) struct Arc<Sys: Variational, L: Numbers> {
 }
 
 impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
-    /// Builds the arc from the first `order` coefficients of a series, and the next one of the remainder.
+    /// Builds the arc from coefficients 0 to `order - 1` of a series, and coefficient `order` of the remainder.
     pub(super) fn new(
         series: &Expansion<Sys, L>,
         remainder: &Expansion<Sys, L>,

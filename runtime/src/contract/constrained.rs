@@ -116,8 +116,9 @@ pub trait Constrained: System {
     fn is_reduced(&self) -> bool;
 
     /// Corrects the velocity to the constraints after a step. The correction need not be the smallest, unlike that of
-    /// [`System::state_nearest`]. Where some velocities are functions of the others at every state, only these are
-    /// recomputed, and the others keep all their digits. Does nothing where [`Constrained::is_reduced`].
+    /// [`System::state_nearest`]. If the constraints determine the same velocities from the others at every state, only
+    /// the determined ones are recomputed; the others keep all their digits. Does nothing where
+    /// [`Constrained::is_reduced`].
     ///
     /// # Errors
     /// A [`Fault`] where the velocity cannot be corrected; the state is then unchanged.

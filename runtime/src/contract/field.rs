@@ -75,8 +75,8 @@ pub trait VectorField {
         false
     }
 
-    /// True unless rates vary about as smoothly as sines, at the values of the parameters. The cost is that of a few
-    /// rates. A run asks once.
+    /// True unless rates vary about as smoothly as sines, at the values of the parameters. The call costs about as much
+    /// as a few evaluations of the rate. A run makes it once.
     fn has_narrow_rates(&self) -> bool {
         self.can_be_narrow()
     }
@@ -178,7 +178,7 @@ pub trait TaylorField: VectorField {
     /// Writes the quantities at `(t, state)`. `parameters` may differ from the system's own.
     ///
     /// # Errors
-    /// A [`Fault`] where the derivative does not exist in any of the lanes; `firsts` is unspecified then.
+    /// A [`Fault`] if the derivative does not exist in at least one of the lanes; `firsts` is unspecified then.
     fn begin<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,

@@ -219,8 +219,8 @@ pub trait Impacting: System {
     /// The state after the declared reset of a surface, or in the mode that the surface leads to.
     ///
     /// # Errors
-    /// The [`Outcome`] that ends the run: a [`Fault`], or a state that is not finite, outside the chart or off the
-    /// constraints.
+    /// The [`Outcome`] that ends the run: a [`Fault`], a surface without reset or transition, or a state that is not
+    /// finite, outside the chart or off the constraints.
     fn landing(
         &self,
         surface: usize,

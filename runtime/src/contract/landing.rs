@@ -23,7 +23,7 @@ pub(crate) fn after_reset<Sys: Impacting + ?Sized>(
         return Err(Outcome::NoReset { surface });
     };
     let (q, qdot) = (jump.position, jump.velocity);
-    // A component that the reset leaves unchanged keeps its last digit: momenta are not recomputed from velocities.
+    // A reset that changes nothing keeps the last digits of the state: momenta are not recomputed from velocities.
     if q == system.position(before) && qdot == system.velocity(t, before)? {
         return Ok(*before);
     }

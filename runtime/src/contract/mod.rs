@@ -1,7 +1,8 @@
 //! The traits between generated code and runtime: one per effect, so that a scene contains only the code for its
 //! declarations.
 //!
-//! Integrators use [`VectorField`] alone. Every function takes the time; autonomous systems ignore it.
+//! Runge-Kutta methods use nothing but [`VectorField`]. Functions of the motion take the time; autonomous systems
+//! ignore it.
 
 mod constrained;
 mod field;

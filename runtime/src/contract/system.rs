@@ -87,9 +87,9 @@ pub trait System: VectorField {
     /// A [`Fault`], for states that do not hold momenta themselves.
     fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
 
-    /// The state with these positions and velocities, without checks. A state reduced to D only represents velocities
-    /// that satisfy the constraints. It takes the quasi-velocities of `qdot` and loses the deviation of `qdot` from the
-    /// constraints.
+    /// The state with these positions and velocities, without checks. A state reduced to D represents only velocities
+    /// that satisfy the constraints: it holds the quasi-velocities of `qdot`, and the deviation of `qdot` from the
+    /// constraints is lost.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -151,9 +151,9 @@ pub trait System: VectorField {
         None
     }
 
-    /// The interval with this number among those of the chart at a state: a component of the state and the bounds it
-    /// must keep. `None` by default, even if [`System::outside_chart`] is implemented. A run then checks the chart at
-    /// the ends of its steps, but not inside them.
+    /// Interval `number` of the chart at a state: a component of the state, and the open interval in which it must
+    /// stay. `None` past the last one. The default has no intervals, even if [`System::outside_chart`] is implemented:
+    /// a run then checks the chart at the ends of its steps, but not inside them.
     fn chart(&self, state: &Self::State, number: usize) -> Option<Chart> {
         let _ = (state, number);
         None
@@ -189,7 +189,8 @@ pub trait System: VectorField {
     /// of its terms. Systems without constraints accept every state.
     ///
     /// # Errors
-    /// [`StateError::OffPosition`] for an equation of positions, [`StateError::OffConstraint`] for a constraint.
+    /// [`StateError::OffPosition`] for positions that violate a holonomic constraint, [`StateError::OffConstraint`] for
+    /// velocities that violate a constraint.
     fn admit(&self, t: f64, q: &Self::Vector, qdot: &Self::Vector) -> Result<(), StateError> {
         let _ = (t, q, qdot);
         Ok(())
@@ -208,8 +209,8 @@ pub trait System: VectorField {
         self.state_unchecked(t, q, qdot)
     }
 
-    /// Completes positions: moves the positions whose `placed` is not 1 so that all positions satisfy the constraints
-    /// on positions. Returns `q` unchanged if there are no such constraints. If every position is placed, only checks
+    /// Completes positions: moves the positions whose `placed` is not 1 so that all positions satisfy the holonomic
+    /// constraints. Returns `q` unchanged if there are no such constraints. If every position is placed, only checks
     /// `q`.
     ///
     /// # Errors
@@ -337,7 +338,7 @@ pub(crate) fn carried<S: System + ?Sized>(
 /// A place in a piece of smooth motion at which constraint forms become dependent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankDrop {
-    /// The last fraction of the piece before it.
+    /// The last fraction of the piece before this place.
     pub theta: f64,
     /// Index of the constraint that depends on the earlier ones there, or vanishes.
     pub constraint: usize,

@@ -55,9 +55,9 @@ pub trait Variational: TaylorField + System + Sized {
     /// The numbers of a [`Contact`](crate::Contact), in its order, followed by the direction of the impulse.
     type Collision<L: Numbers>: Row<L>;
 
-    /// One number per equation that constraints impose on the motion: M in the global form, none in the form reduced
-    /// to D; and one per constraint that has a position level. For a model with modes, one less than a state has
-    /// components: the deviations of the mode, the components that it does not use, the number of the mode, zeros.
+    /// The residuals of the constraints (M in the global form, none in the form reduced to D), then one number per
+    /// position level. For a model with modes the length is one less than that of a state. It holds the deviations of
+    /// the mode, the components that the mode does not use, the number of the mode, and zeros.
     type Deviations<L: Numbers>: Row<L>;
 
     /// One state per component of a state: a square matrix by its columns.
@@ -194,7 +194,7 @@ pub trait Variational: TaylorField + System + Sized {
     }
 
     /// Positions and velocities after the declared reset of a surface; `None` if its law is not a reset, and for a
-    /// model with modes, whose resets are those of the mode ([`Self::passed`]).
+    /// model with modes, where [`Self::passed`] applies the resets.
     ///
     /// # Errors
     /// A [`Fault`] of the velocities before the reset, or of the reset itself.

@@ -3,7 +3,7 @@
 use super::System;
 use crate::error::Fault;
 
-/// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.
+/// A system whose divergence with respect to the natural volume `mu_C` ([`InvariantVolume`]) was derived.
 ///
 /// # Examples
 ///
@@ -32,7 +32,8 @@ pub trait Divergence: System {
     /// A [`Fault`] where the metric or the constraints are singular.
     fn divergence(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
-    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components.
+    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components. Here `W^a = g^-1 eta^a`, and `m_ab`
+    /// is the inverse of `m^ab = eta^a(W^b)`.
     ///
     /// # Errors
     /// A [`Fault`] where the metric or the constraints are singular.
@@ -52,9 +53,9 @@ pub trait Divergence: System {
 /// `det g dq dv = dq dp`. Impacts by the law `elastic` keep `exp(G) mu_C` as well where the constraints are linear.
 ///
 /// Implemented for models with a proved claim `density: exact`, `density: locally_exact`, or `density = EXPR` where
-/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. If `G` has no closed form, it is an integral. If it is
-/// not determined up to a constant either, the trait is not implemented, and the notes in the model's documentation
-/// say so.
+/// `EXPR` does not depend on velocities; then `G = ln |EXPR|`. If `G` has no closed form, it is computed as an
+/// integral. If `G` is not even determined up to a constant, the trait is not implemented, and the notes in the
+/// model's documentation say so.
 ///
 /// At given parameters both logarithms are determined up to a constant: only their differences between configurations
 /// are meaningful. `G` depends on the choice of the constraint forms, the volume does not.
@@ -97,8 +98,8 @@ pub trait InvariantVolume: System {
     /// which is stored unwrapped.
     const IS_SINGLE_VALUED: bool;
 
-    /// True if `G` has no closed form. It is then the integral of `dG` along the line from a regular configuration,
-    /// computed to rounding, and [`Fault::SingularConstraint`] if a singularity lies on that line.
+    /// True if `G` has no closed form. It is then the integral of `dG` along the straight line from a regular
+    /// configuration, computed to rounding. A singularity on that line gives [`Fault::SingularConstraint`].
     const IS_INTEGRAL: bool;
 
     /// `G`, the logarithm of the density with respect to `mu_C`.

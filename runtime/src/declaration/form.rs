@@ -115,8 +115,8 @@ impl<S: Emitted> Of<S> {
         false => KernelSet::OF_SURFACES,
     };
 
-    /// True if the quantities at the start of a series do not fit into an erased system. The series then keeps the
-    /// results and the time only, and computes the quantities again in `advance`.
+    /// True if the quantities at the start of a series do not fit into an erased system. The series then keeps only the
+    /// rates, the gaps and the time, and computes all quantities again in `advance`.
     const BEGINS_AGAIN: bool = <S::Firsts<f64> as Row<f64>>::CAPACITY > MOST_FIRSTS;
 
     /// Number of rates and gaps.

@@ -28,7 +28,7 @@ pub(super) const FIRSTS: usize = 18;
 /// Maximum number of initial values of a series of an erased system.
 pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 
-/// Size of the storage for the quantities of the geometry at a state.
+/// The square of this number is the number of entries of the storage for the geometric quantities at a state.
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each with its own type.
@@ -62,7 +62,7 @@ pub struct Form {
     pub series: SeriesTable<f64>,
     /// The power series over other numbers ([`SeriesTable`]).
     pub series_over: Kinds,
-    /// Work per order of the series, if known.
+    /// Work of an expansion, if known.
     pub work: Held<dyn Fn() -> Option<Work> + Send + Sync>,
     /// Number of gaps that have a series: all of them, or none.
     pub series_gaps: usize,

@@ -1,10 +1,10 @@
 //! Bounds of the second derivatives of gaps in a box. With the gaps at both ends of a step in the box, they show for
 //! most steps that the step meets no surface.
 //!
-//! Consider a path in the box with `|x_i'| <= v w_i` and `|x_i''| <= a w_i`, with derivatives by the fraction `s` of
-//! the step. The gap has `|g''| <= C = v^2 B + a S`, where `S` and `B` bound its first and second derivatives along
-//! all lines with `|x_i'| <= w_i`. Between its ends the gap is above `(1 - s) g_0 + s g_1 - C s (1 - s)/2`, which has
-//! no zero inside if `(sqrt g_0 + sqrt g_1)^2 > C/2`.
+//! Consider a path in the box with `|x_i'| <= v w_i` and `|x_i''| <= a w_i`, with derivatives with respect to the
+//! fraction `s` of the step. The gap has `|g''| <= C = v^2 B + a S`, where `S` and `B` bound its first and second
+//! derivatives along all lines with `|x_i'| <= w_i`. With the values `g_0` and `g_1` at the ends, the gap is above
+//! `(1 - s) g_0 + s g_1 - C s (1 - s)/2`, which has no zero inside if `(sqrt g_0 + sqrt g_1)^2 > C/2`.
 //!
 //! The box grows with the motion, so that a motion in a bounded region needs only a few measurements.
 
@@ -39,7 +39,7 @@ pub(crate) struct Bends<S, G> {
     /// Distances that components, and time, cover in a step.
     ways: S,
     time: f64,
-    /// The bounds `S` and `B` of every gap, along lines with the distances `w` of the time of the measurement
+    /// The bounds `S` and `B` of every gap. `w` are the distances as they were when these bounds were computed
     /// (`measured`).
     slopes: G,
     bends: G,
@@ -186,7 +186,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
     }
 }
 
-/// The larger number; NaN if one of them is none.
+/// The larger number; NaN if one of them is NaN.
 #[inline(always)]
 fn larger(left: f64, right: f64) -> f64 {
     match right <= left || left.is_nan() {

@@ -40,8 +40,8 @@ pub(crate) enum Signs {
 
 /// Signs from at most 32 Bernstein coefficients. A coefficient with an absolute value of at most `doubt` is uncertain.
 ///
-/// A single uncertain coefficient between a positive and a negative one does not hide a root. Any other uncertain
-/// coefficient may hide two roots.
+/// A single uncertain coefficient between a positive and a negative one hides no further root. Any other uncertain
+/// coefficient may hide roots.
 #[inline(always)]
 pub(crate) fn read(coefficients: &[f64], doubt: f64) -> Signs {
     // One bit per coefficient, the first one lowest.

@@ -16,8 +16,8 @@ pub(crate) struct Onset {
     pub after: f64,
 }
 
-/// Finds the first fraction up to `reach` at which a predicate holds that does not hold at the start. `holds` evaluates
-/// the predicate at a fraction. `is_out` is true for a stretch on which it certainly holds nowhere.
+/// Finds the first fraction up to `reach` at which a predicate holds. The predicate does not hold at the start. `holds`
+/// evaluates it at a fraction. `is_out` is true for a stretch on which it certainly holds nowhere.
 pub(crate) fn onset(
     reach: f64,
     mut is_out: impl FnMut([f64; 2]) -> bool,

@@ -2,8 +2,8 @@
 //!
 //! The step is searched stretch by stretch from its start. A Taylor model of the gap on the stretch, or on a longer
 //! one, decides each stretch. A gap that the model encloses away from zero has no fall there. For a gap whose rates
-//! have one sign, the signs at the ends show the fall. Undecided stretches are halved until rounding decides. A new
-//! model is computed if the remainder of the last one is the reason.
+//! have one sign, the signs at the ends show the fall. Undecided stretches are halved until rounding decides. If a
+//! stretch is undecided because of the remainder of the last model, a new model is computed.
 
 use super::crossing::Signs;
 use super::piece::Piece;
@@ -85,7 +85,7 @@ pub(crate) struct Line<'a> {
     pub whole: Option<TaylorModel>,
     /// The gap at the start and at the end of the step.
     pub ends: [f64; 2],
-    /// Size of the gap's rounding errors at a fraction of the step; evaluated once or twice.
+    /// Size of the gap's rounding errors at a fraction of the step; evaluated for few fractions.
     pub rounding: &'a mut dyn FnMut(f64) -> f64,
     /// Start of the search.
     pub start: Start,
@@ -543,7 +543,7 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
     Drop { x, f }
 }
 
-/// Place of the next trial between `x[0]` and `x[1]`.
+/// Place of the next trial, as a fraction of the way from `x[0]` to `x[1]`.
 fn next_part(x: [f64; 3], f: [f64; 3]) -> f64 {
     let xi = (x[0] - x[1]) / (x[2] - x[1]);
     let phi = (f[0] - f[1]) / (f[2] - f[1]);

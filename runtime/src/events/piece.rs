@@ -1,7 +1,7 @@
 //! Signs of a gap on a piece of a stretch, from its Taylor model on the stretch.
 //!
 //! On a piece the cubic has four Bernstein coefficients, which bound it (convex hull); their differences bound its
-//! rate. The slope of the remainder bounds its change along the piece.
+//! rate. The slope of the remainder bounds the change of the remainder along the piece.
 
 use super::crossing::Signs;
 use crate::numbers::TaylorModel;
@@ -88,7 +88,8 @@ impl Piece {
         [ahead[0].max(within[0]), ahead[1].min(within[1])]
     }
 
-    /// Signs of the gap from its enclosure alone, which must exclude 0 at both ends of the piece.
+    /// Signs of the gap from its enclosure, without values at the ends. `Unclear` if the enclosure contains 0 at an
+    /// end.
     #[inline]
     pub(crate) fn signs(&self) -> Signs {
         let (hull, error) = (&self.hull, self.error);

@@ -7,8 +7,8 @@ use crate::jet::LENGTH;
 use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
-/// Number of terms that are first expanded about the middle of a part. For the other terms the absolute values are
-/// added.
+/// Number of terms that are expanded about the middle of a part at first. The other terms are bounded by the sum of
+/// their absolute values.
 pub(crate) const FEW: usize = 8;
 
 /// Largest sum of these other terms relative to the linear term of the model. Above it, all terms are expanded about
@@ -128,7 +128,7 @@ impl<S: StateVector> Polynomials<S> {
         }
         let mut tail = 0.0;
         if terms <= self.order {
-            // On `[0, b]` the sum of the terms from degree `k` on is at most `b^k` times that on the whole step.
+            // The bound of the terms from degree `k` on is `b^k` times as large on `[0, b]` as on the whole step.
             let [b, square] = [part[1], part[1] * part[1]];
             let power = square * square * square * b;
             tail = power * b * self.tails[0].as_slice()[i];

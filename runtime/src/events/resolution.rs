@@ -3,8 +3,8 @@
 //!
 //! The runtime does not know the terms. It estimates their sum by `sum_i |dh/dx_i| |x_i|`, from difference quotients:
 //! each component is changed by a small fraction of itself. At a zero of `h` the estimate agrees with the sum of the
-//! terms up to a factor of their degree. Conditions of surfaces have the same tolerance, because rounding decides on
-//! their boundary.
+//! terms up to a factor of their degree. Conditions of surfaces have a similar tolerance ([`counts_beyond_rounding`]),
+//! because rounding decides on their boundary.
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;

@@ -8,8 +8,8 @@
 //! `h` is smaller by this factor too.
 //!
 //! The box serves many steps, and grows with the motion. A step whose radii exceed the imaginary parts of the box gets
-//! a box of its own. If this happens often, the shared box is extended. If the shared box gives a useless bound, it is
-//! set anew for the present step.
+//! a box of its own. If this happens often, the shared box is extended. If the shared box gives a poor bound, it is set
+//! anew for the present step, but not in every step.
 
 use core::cell::Cell;
 
@@ -45,8 +45,8 @@ const PARTS: [f64; 2] = [
     ComplexInterval::LEAST_RATIO / RATIOS[1],
 ];
 
-/// Factors of the imaginary parts for which the gaps are bounded. Bounds of functions grow faster than these factors,
-/// so that small boxes give better bounds.
+/// Factors of the imaginary parts for which the gaps are bounded. Bounds of functions grow faster than the imaginary
+/// parts, so that small boxes give better bounds.
 const LEVELS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
 /// Factor by which the imaginary parts of the box exceed those of a step that made it grow.

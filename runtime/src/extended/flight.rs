@@ -285,7 +285,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
                 break;
             }
         }
-        // The last step is rounding error, unless there is no root.
+        // If there is a root, the last step has the size of rounding errors.
         let digits = crate::math::sqrt(Extended::<PARTS>::ROUNDING);
         let size = theta.nearest().abs().max(self.theta.abs());
         match last <= digits * size {

@@ -9,10 +9,9 @@
 //!   summed in extended numbers too.
 //! - The steps, rounded to doubles, are examined by the same effects as in any run: they find the surface that is met
 //!   and an approximate time. The root of the gap is then refined, and the law in force acts, in extended numbers.
-//! - Events that the rounding of doubles cannot decide are not decided: grazing impacts, several surfaces at one
-//!   time, motion that a surface holds and additions of a policy to a law end the run with an
-//!   [`Undefined`](crate::Undefined). Accumulations end it with their [`Outcome`](crate::Outcome), where doubles
-//!   detect them.
+//! - Events that doubles cannot decide end the run with an [`Undefined`](crate::Undefined): a grazing impact, several
+//!   surfaces hit at one time, motion that a surface holds, and a policy that adds to a law. An accumulation of
+//!   impacts ends the run with its [`Outcome`](crate::Outcome) where the run in doubles detects it.
 //!
 //! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection
 //! onto constraints acts on the rounded states only, since the extended motion satisfies the constraints to all its

@@ -24,8 +24,8 @@ pub(super) struct Known<'a, G: StateVector> {
     pub(super) whole: Option<TaylorModel>,
 }
 
-/// The first fall of a gap, with its time to the last bits. Enclosures of the gap itself decide if its polynomial shows
-/// neither a single fall nor none.
+/// The first fall of a gap, with its time to the last bits. If the polynomial of the gap does not show that there is
+/// one fall or none, enclosures of the gap decide.
 pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
@@ -94,7 +94,7 @@ enum Plain {
     Unknown,
 }
 
-/// The fall of a polynomial with one root in the whole step, or in its beginning. The gap itself corrects the root.
+/// The fall of a polynomial with one root in the whole step, or in its first part. Values of the gap correct the root.
 fn plain_fall<G: StateVector>(
     surface: usize,
     series: &GapSeries<G>,

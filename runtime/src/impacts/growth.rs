@@ -3,8 +3,8 @@
 //! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add a
 //! fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
 //! The law used is the one that better predicts an intermediate flight from the first and the last. After the last
-//! flight `f`, the remaining flights take `f r/(1 - r)` in total, or `sqrt(c f)`, where `1/sqrt(c)` is the mean growth
-//! of `1/sqrt(f_n)`.
+//! flight `f`, the remaining flights take `f r/(1 - r)` in total if they are geometric, and `sqrt(c f)` if they are
+//! algebraic, where `1/sqrt(c)` is the mean growth of `1/sqrt(f_n)` per flight.
 
 use crate::math;
 use crate::per_surface::PerSurface;

@@ -166,7 +166,7 @@ impl<G: StateVector> Held<G> {
             let contact = system.contact(surface, t, state)?;
             weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
         }
-        // The residual, and the search direction: the impulse with which each surface alone would cancel its residual.
+        // The residual, and the search direction: for each surface the impulse that, by itself, cancels its residual.
         let mut missing = scaled(&self.only(rates), -1.0);
         let mut search = times(&weights, &missing);
         let mut squared = product(&search, &missing);

@@ -38,8 +38,8 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// ends there; after an impact, it ends with the state after the impact.
 ///
 /// At a surface with instantaneous constraints, the state is first projected onto them ([`Impacting::focus`]). If the
-/// state still approaches the surface, the law acts within the constraints. They also hold while the motion goes on
-/// along the surface.
+/// state still approaches the surface, the law acts within the constraints. Instantaneous constraints also hold while
+/// the motion goes on along the surface.
 ///
 /// A surface with the law [`Law::Reset`] has no forbidden side. It acts whenever its gap falls through 0 from above;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
@@ -146,8 +146,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Replaces the law of a surface. Its coefficients are used as given: one above 1 adds energy at every impact. An index
-    /// past the last surface has no effect.
+    /// Replaces the law of a surface. The coefficient of the law is used as given: a coefficient above 1 adds energy at
+    /// every impact. An index past the last surface has no effect.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.overrides.set(surface, Some(law));

@@ -19,8 +19,8 @@ use crate::per_surface::PerSurface;
 use crate::record::{Hold, Observer};
 use crate::state::StateVector;
 
-/// Maximum number of changes at one time per surface, and as many once more. Beyond it the run ends: no choice of
-/// surfaces is taken to continue the motion.
+/// Maximum number of changes at one time is this, times the number of surfaces plus one. After more changes the run
+/// ends, because no set of held surfaces seems to continue the motion.
 const CHANGES: u32 = 4;
 
 /// Ratio to the kinetic energy below which the square of a gap rate counts as 0: the square of `2^-36`, as for impacts.
@@ -225,8 +225,8 @@ impl<G: StateVector> Resting<G> {
         )
     }
 
-    /// Ends sliding where the motion of the mode that the transition `surface` leaves moves away from the surface. The
-    /// motion continues in that mode.
+    /// Ends sliding where one of the two modes no longer leads into the surface: the mode that the transition `surface`
+    /// leaves. The motion continues in this mode.
     fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         slide: Slide,

@@ -61,8 +61,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
     }
 
     /// The fall of the gap in a bracket in which the polynomial has a fall and no other root, by Chebyshev's method on
-    /// the polynomial, with the gap itself in the last step. `None` if the method does not converge soon, or if the gap
-    /// differs from the polynomial. The second value is true if the gap provably has no other root in the bracket.
+    /// the polynomial, with the gap itself in the last step. `None` if the method does not converge soon, if the gap
+    /// differs from the polynomial, or if rounding leaves the root too uncertain. The second value is true if the gap
+    /// provably has no other root in the bracket.
     pub(super) fn fall(
         &self,
         [mut before, mut after]: [f64; 2],
@@ -122,7 +123,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         slope < 0.0 && 8.0 * bend * doubt <= slope * slope && -0.5 * slope > drift
     }
 
-    /// True if the step to `root` leaves errors below rounding only. The error of the step itself is about twice the
+    /// True if the step to `root` leaves no error above rounding. The error of the step itself is about twice the
     /// step times the square of the relative change of the slope. The slope of the gap differs from that of the
     /// polynomial by at most the slope of a last term as large as the polynomial's error.
     #[inline(always)]

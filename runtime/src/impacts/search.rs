@@ -1,5 +1,5 @@
-//! Event location along a step that the first tests left undecided: falls of gaps through zero, impacts among them, and
-//! motion from rest on a surface.
+//! Event location along a step that the first tests left undecided. Finds falls of gaps through zero, selects the
+//! impacts among them, and decides if motion that starts on a surface leaves it or presses into it.
 
 use super::fall::{Known, first_fall};
 use super::glance::Glance;

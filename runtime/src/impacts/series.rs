@@ -31,18 +31,18 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The gaps of a step as polynomials in the fraction of the step.
 #[derive(Debug)]
 pub(super) struct GapSeries<G: StateVector> {
-    /// The polynomials. Their error bounds cover deviations at the end of the step, rounding errors, and truncation
-    /// errors.
+    /// The polynomials. Their error bounds cover deviations at the end of the step, rounding errors, and, after
+    /// [`GapSeries::certify`], truncation errors.
     pub(super) polynomials: Polynomials<G>,
     /// Error bounds of the constant terms.
     pub(super) floors: G,
-    /// Sums of the absolute values of all terms, and of those above the fourth.
+    /// Sums of the absolute values of all terms, and of those above order 4.
     pub(super) sizes: G,
     pub(super) tails: G,
     /// True if the error bounds include the truncation error, false if it has no known bound; `None` before
     /// [`GapSeries::certify`].
     pub(super) certain: PerSurface<Option<bool>, G>,
-    /// The gaps at the end of the step, and their slopes by the fraction of the step.
+    /// The gaps at the end of the step, and their slopes with respect to the fraction of the step.
     pub(super) last: G,
     pub(super) slopes: G,
     /// True if the slopes are accurate.

@@ -6,8 +6,9 @@
 //! f = f_b + s (f_a - f_b),   s = r_b/(r_a + r_b),
 //! ```
 //!
-//! with the gap rates `r_a`, `r_b` of the two transitions, each in the mode that it leaves. Both are negative. The
-//! sliding mode ends where one of them is 0; the motion continues in the mode with that rate.
+//! with the gap rates `r_b` and `r_a` of the transitions `back` and `across` ([`Slide`]), each in the mode that the
+//! transition leaves. Both are negative. The sliding mode ends where one of them is 0; the motion continues in the mode
+//! with that rate.
 //!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 

@@ -35,9 +35,9 @@ pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(false)
 }
 
-/// True if a gap that is 0 at this fraction of a step, with gap rate 0, continues like the cube of time. A gap like the
-/// square is a grazing impact or a contact. The changes of the rate over an eighth and a quarter of the remaining step
-/// distinguish them.
+/// True if a gap that is 0 at this fraction of a step, with gap rate 0, continues like the cube of time. If it
+/// continues like the square of time, the motion has a grazing impact or begins a contact. The changes of the rate over
+/// an eighth and a quarter of the remaining step distinguish the two cases.
 pub(super) fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,

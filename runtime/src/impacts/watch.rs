@@ -37,8 +37,8 @@ const FEW: usize = 8;
 /// The gaps at the start of the next step, and the results for the last one.
 #[derive(Debug, Clone)]
 pub(super) struct Watch<Sys: Impacting> {
-    /// Gaps at the start of the step; 0 for surfaces at hand. Negative only for a surface that does not count or is
-    /// passable.
+    /// Gaps at the start of the step; 0 for surfaces at hand. A gap is negative only if its surface does not count or
+    /// is passable.
     pub(super) gaps: Sys::Gaps,
     /// True for passable surfaces.
     passable: PerSurface<bool, Sys::Gaps>,
@@ -69,7 +69,7 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) errors: f64,
     /// Surfaces that hold the motion. Their gaps are 0 and are not tested.
     pub(super) held: Held<Sys::Gaps>,
-    /// The surface that begins to count behind the motion where the last step is to be cut.
+    /// The surface that begins to count while the motion is behind it, where the last step is to be cut.
     pub(super) behind: Option<usize>,
     /// True if a surface is a wall with conditions, behind which the motion may be.
     guarded: PerSurface<bool, Sys::Gaps>,

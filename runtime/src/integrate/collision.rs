@@ -5,10 +5,10 @@
 //! S(q0, q1) = S_h'(q0, q) + S_(h-h')(q, q1),    q on the surface,    stationary in h' and in q along the surface
 //! ```
 //!
-//! Stationarity in `q` makes the momentum jump along `dh` alone. Stationarity in `h'` makes the discrete energy
+//! Stationarity in `q` lets the momentum jump only along `dh`. Stationarity in `h'` makes the discrete energy
 //! `-dS_h/dh` equal before and after the impact. The step across the impact therefore has a generating function and
-//! is symplectic. An exact reflection would keep the energy instead, which differs from the discrete energy by the
-//! error of the method, and would not preserve areas.
+//! is symplectic. An exact reflection would keep the energy, which differs from the discrete energy by the error of the
+//! method; the step would then not be symplectic.
 //!
 //! # References
 //! R. Fetecau, J. Marsden, M. Ortiz, M. West, *Nonsmooth Lagrangian mechanics and variational collision integrators*,
@@ -199,7 +199,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     }
 }
 
-/// See [`Stepper::rebound`]. The jump is `scale` times the jump of the law, along the same direction.
+/// See [`Stepper::rebound`]. Returns the state after a jump along that of the law whose size keeps the discrete energy;
+/// `None` if the jump of the law stands.
 pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     step: &FixedStep<F::State, M>,
     field: &F,

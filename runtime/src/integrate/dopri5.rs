@@ -45,9 +45,9 @@ const A5: [Term; 5] = [
     (4, -5103.0 / 18656.0),
 ];
 
-/// Weights of the fifth-order solution: 500/1113, 125/192, -2187/6784 and 11/84, each changed by a few units in its
-/// last place, so that `sum b_i c_i` is 1/2 to 1/400 of a rounding error. The deviation of this sum would shift every
-/// step under constant forces in the same way.
+/// Weights of the fifth-order solution. The weights 500/1113, 125/192, -2187/6784 and 11/84 are changed by a few units
+/// in their last places, so that `sum b_i c_i` differs from 1/2 by 1/400 of a rounding error. Under constant forces, a
+/// deviation of this sum would shift every step by the same amount.
 const B: [Term; 5] = [
     (0, 35.0 / 384.0),
     (2, 0.449_236_298_292_902_57),

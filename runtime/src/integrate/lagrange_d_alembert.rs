@@ -65,8 +65,8 @@ pub type Dla2<S> = FixedStep<S, MidpointPrinciple>;
 
 /// Five steps of [`Dla2`] composed to order 4 (Suzuki): dense output of order 4.
 ///
-/// Preserves the same properties as [`Dla2`], with energy errors of size `h^4`. One of the five steps goes back in
-/// time by 0.66 `h`, which is unsuitable for strongly damped systems.
+/// It has the properties of [`Dla2`], with energy errors of size `h^4`. One of the five steps goes back in time by
+/// 0.66 `h`, so the method is unsuitable for strongly damped systems.
 ///
 /// # References
 /// M. Suzuki, *Fractal decomposition of exponential operators*, 1990; Hairer, Lubich, Wanner, *Geometric numerical

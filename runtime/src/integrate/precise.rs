@@ -32,7 +32,7 @@ impl<S: StateVector> Precise<S> {
         kept
     }
 
-    /// Component `i` plus a number, rounded once.
+    /// Component `i`, with its rounding error, plus a number.
     #[inline(always)]
     pub(super) fn plus(&self, i: usize, increment: f64) -> f64 {
         self.value.padded()[i] + (self.rest.padded()[i] + increment)
@@ -45,7 +45,7 @@ impl<S: StateVector> Precise<S> {
         (self.value.padded()[i] - other.value.padded()[i]) + rests
     }
 
-    /// The state plus `increment(i)` in each component, also in those of [`StateVector::padded`], with the rounding
+    /// The state plus `increment(i)` in each component and in the padding ([`StateVector::padded`]), with the rounding
     /// error of the sum.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {

@@ -192,9 +192,9 @@ pub trait Stepper<F: VectorField> {
         None
     }
 
-    /// Repeats the last step with a shorter length, close to the fraction `theta` of the last one, such that the gap at
-    /// the end of the step is 0. `gap` returns a gap and its rate. True on success; otherwise the step is unchanged.
-    /// Only methods that solve for impacts succeed.
+    /// Repeats the last step with a new length, close to `theta` times the present one, such that the gap at the end of
+    /// the step is 0. `gap` returns a gap and its rate. True on success; otherwise the step is unchanged. Only methods
+    /// that solve for impacts succeed.
     fn meet(
         &mut self,
         field: &F,

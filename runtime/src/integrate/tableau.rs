@@ -7,9 +7,10 @@ pub(super) type Term = (usize, f64);
 
 /// `sum over terms of coefficient * stage`, component `i`, without the first stage.
 ///
-/// Stages hold the differences between their rates and that of the first stage. The coefficient of the first stage is
-/// the node minus the sum of the row. Coefficients are rounded, and large relative to their sum. If the sum used
-/// the rates themselves, a motion with almost constant rates would have an error of the same sign in every step.
+/// Stages after the first hold the differences between their rates and the rate of the first stage. A row adds up to
+/// its node, so the node times the first rate plus this sum is the combination of the rates. Coefficients are rounded,
+/// and large relative to their sum: a sum over the rates themselves would give a motion with almost constant rates an
+/// error of the same sign in every step.
 #[inline(always)]
 pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64 {
     let mut sum = 0.0;
@@ -43,8 +44,8 @@ pub(super) fn weigh_beyond_rounding(values: &[f64], terms: &[Term], size: f64) -
     }
 }
 
-/// `out = base + h * (node * rate + sum over terms of coefficient * difference)`, from the rate of the first stage and the
-/// differences of the others.
+/// `out = base + h * (node * rate + sum over terms of coefficient * difference)`, from the rate of the first stage and
+/// the differences of the others.
 #[inline(always)]
 pub(super) fn combine<S: StateVector>(
     base: &S,

@@ -1,5 +1,5 @@
-//! `Constrained` for every declared model with constraints. For a model with modes, it describes the constraints of the
-//! mode in which new states begin.
+//! `Constrained` for every declared model with constraints. In a model with modes, functions of a state evaluate the
+//! constraints of the mode of the state; the other functions those of the mode in which states are made.
 
 use super::{At, Declared, Form, HasConstraints, Kernels, Part};
 use crate::contract::{Constrained, Level, System};

@@ -93,7 +93,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync {
         Ok(())
     }
 
-    /// Implementation of [`System::complete_position`] with equations of positions.
+    /// Implementation of [`System::complete_position`] with holonomic constraints.
     fn completed_position(
         &self,
         t: f64,

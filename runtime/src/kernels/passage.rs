@@ -37,8 +37,8 @@ const GRAZE: f64 = 64.0 * f64::EPSILON;
 /// The state in the mode that a surface leads to. `local` is the index of the surface in the mode that is left.
 ///
 /// # Errors
-/// The [`Outcome`] that ends the run: a fault, or a state that is not finite, outside the chart of the entered mode
-/// or off its constraints.
+/// The [`Outcome`] that ends the run: [`Outcome::Untaken`] where the surface has no transition, a fault, or a state
+/// that is not finite, outside the chart of the entered mode or off its constraints.
 pub(super) fn passage<S: Declared + HasSurfaces>(
     system: &S,
     (surface, local, transition): (usize, usize, Transition),

@@ -9,7 +9,7 @@ use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 use crate::variations::flow::{dual_parameters, dual_state};
 
-/// Singular values below this multiple of the largest one, or of 1 if that is larger, count as 0.
+/// Singular values below this multiple of the largest one count as 0; of 1 if the largest one is below 1.
 const RANK: f64 = 1e-7;
 
 /// A direction is dependent on others if its orthogonal part is at most this fraction of its length.
@@ -327,8 +327,8 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     }
 }
 
-/// The `x` that minimises `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A` is the leading
-/// square of size `size`. `columns` and `turned` are overwritten.
+/// The `x` that minimises `|A x - b|^2 + damping |x|^2`, with component 0 along singular vectors whose singular values
+/// count as 0. `A` consists of the first `size` of the `columns`. `columns` and `turned` are overwritten.
 ///
 /// One-sided Jacobi method (Hestenes): pairs of columns are rotated until all are orthogonal.
 pub(super) fn least_squares<S: StateVector>(

@@ -13,8 +13,8 @@ use crate::describe::Instance;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
 
-/// A fixed section, shared by all members of a family. The values of the constraints' conserved quantities are the same
-/// for all members.
+/// A fixed section, shared by all members of a family. The deviations from the constraints, levels included, are the
+/// same for all members.
 pub struct Anchor<Sys: Variational>(Fixed<Sys>);
 
 /// A point of a section and its image under the Poincare map. Vectors along the section have their components in the

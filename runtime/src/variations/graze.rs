@@ -46,7 +46,8 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
         Ok(())
     }
 
-    /// The place of the minimum of the gap between two fractions, if the minimum is 0 within rounding.
+    /// The place of the minimum of the gap between two places, if the minimum is 0 within rounding. Places are in units
+    /// of time.
     fn touch(&self, surface: usize, [mut low, mut high]: [f64; 2]) -> Option<f64> {
         loop {
             let middle = 0.5 * (low + high);
@@ -62,7 +63,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
         (gap.abs() <= ROUNDING * size).then_some(low)
     }
 
-    /// A gap at a fraction of the step, its rate, and the sum of the absolute values of its terms.
+    /// A gap after `part` units of time, its rate, and the sum of the absolute values of its terms.
     fn gap(&self, surface: usize, part: f64) -> [f64; 3] {
         let (mut gap, mut rate, mut size) = (0.0, 0.0, 0.0);
         for row in self.expansion.gaps[..=self.order].iter().rev() {

@@ -14,7 +14,8 @@ use crate::contract::Variational;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// Largest number of generators of a group: one dual number carries the derivatives by all coordinates of an element.
+/// Largest number of generators of a group: one dual number carries the derivatives with respect to all coordinates of
+/// an element.
 pub const GENERATORS: usize = DIRECTIONS;
 
 /// Coordinates of an element of a group: the factors of its generators, 0 beyond their number.
@@ -197,8 +198,8 @@ impl<Sys: Variational> Pair<'_, Sys> {
         Ok((element, if is_finite { distance } else { f64::INFINITY }))
     }
 
-    /// True if the second derivative of the action by its coordinates vanishes here, so that the state moves along a
-    /// line.
+    /// True if the rates along the generators are the same at the image and after the image is moved by an element: the
+    /// group then moves states along straight lines.
     fn is_linear(&self) -> bool {
         let rates = |element: Element| -> Option<[Sys::State; GENERATORS]> {
             let mut image = *self.image;
@@ -216,7 +217,7 @@ impl<Sys: Variational> Pair<'_, Sys> {
     }
 
     /// The components along the group of the difference between the image, moved by the inverse of an element, and the
-    /// point; their derivatives by the coordinates of the element; the size of the difference.
+    /// point; their derivatives with respect to the coordinates of the element; the size of the difference.
     fn difference(&self, element: &Element) -> Result<(Sys::State, Sys::Columns, f64), Undefined> {
         let parameters = dual_parameters(self.system, &[]);
         let row = dual_state::<Sys>(self.image, &[]);

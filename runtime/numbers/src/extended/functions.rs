@@ -43,7 +43,7 @@ const HALVINGS: u32 = 8;
 /// Below this magnitude, hyperbolic functions follow from `e^x - 1`.
 const SMALL: f64 = 0.25;
 
-/// Number of steps of a method of third order that starts with a double: 53, 159, 477 bits.
+/// Number of steps of a method of third order. Its start is a double: 53 bits become 159, then 477.
 const STEPS: u32 = 2;
 
 /// The nearest integer of a number below `2^51`.
@@ -73,7 +73,7 @@ fn shifted(x: Wide, exponent: i32) -> Wide {
         .scaled(power_of_two(exponent - half))
 }
 
-/// `first + ..`, to the last digit. Each term is the previous term times `factor` over the next divisor.
+/// Sum of a series to the last digit. Term `k` is the term before it times `factor / divisor(k)`; term 0 is `first`.
 fn series(first: Wide, factor: Wide, mut divisor: impl FnMut(u32) -> f64) -> Wide {
     let (mut sum, mut term) = (first, first);
     for k in 1.. {
@@ -130,7 +130,7 @@ pub(super) fn ln(x: Wide) -> Wide {
     LN_2.fused(Wide::plain(f64::from(twos)), logarithm)
 }
 
-/// `ln(1 + x)`. Of a small argument by steps of third order: a sum with 1 would lose the last digits.
+/// `ln(1 + x)`. For a small argument it takes steps of third order, because a sum with 1 would lose the last digits.
 pub(super) fn log1p(x: Wide) -> Wide {
     /// Below this magnitude, the square of the argument is negligible relative to it: `2^-400`.
     const NEGLIGIBLE: f64 = f64::from_bits((1023 - 400) << 52);
@@ -138,7 +138,7 @@ pub(super) fn log1p(x: Wide) -> Wide {
     if size < NEGLIGIBLE {
         return x;
     }
-    // NOTE: this is also the case of NaN.
+    // NOTE: NaN is not small either.
     let is_small = size < SMALL;
     if !is_small {
         return ln(ONE + x);

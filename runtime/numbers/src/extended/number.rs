@@ -20,9 +20,9 @@ pub const MOST_PARTS: usize = 4;
 ///
 /// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. If leading digits
 /// cancel, a difference also has an error of about `2^(-53 (PARTS + 1))` times the larger operand. Elementary
-/// functions are computed in 6 parts and rounded. Digits below `1e-308` do not exist: numbers below
-/// `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines and tangents of angles beyond `2^50` are NaN. A result is
-/// infinite or NaN if it is so in `f64`.
+/// functions are computed in 6 parts and rounded. Parts below `1e-308` lose digits, so numbers below
+/// `1e-308 / 2^(-53 (PARTS - 1))` have fewer than the full number of digits. Sines, cosines and tangents of angles
+/// beyond `2^50` are NaN. A result is infinite or NaN if it is so in `f64`.
 ///
 /// ```
 /// use dalembert_numbers::Extended;
@@ -91,7 +91,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         Self { parts }
     }
 
-    /// The number in another count of parts, rounded.
+    /// The number, rounded to `OTHER` parts.
     pub(super) fn converted<const OTHER: usize>(self) -> Extended<OTHER> {
         if self.parts[0] == 0.0 {
             // 0 keeps its sign.
@@ -113,7 +113,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         }
     }
 
-    /// `self b + c`, rounded once.
+    /// `self b + c`, with one rounding to `PARTS` parts.
     #[inline]
     pub(super) fn fused(self, b: Self, c: Self) -> Self {
         let mut sum = Sum::of(&c.parts);

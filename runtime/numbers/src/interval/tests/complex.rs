@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use crate::numbers::Numbers;
 
-/// A complex number. Functions with a kink take the branch of the real part.
+/// A complex number. Functions with a kink choose their branch by the real part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Complex(Complex64);
 
