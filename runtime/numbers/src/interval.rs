@@ -419,8 +419,7 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// The absolute value if `sign` is the number itself. Any other number, such as a higher coefficient of a series,
-    /// becomes the whole line where `sign` may have either sign, because no series exists across a kink.
+    /// The whole line where `sign` may have either sign, because no series exists across a kink.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
