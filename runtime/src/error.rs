@@ -107,7 +107,10 @@ impl fmt::Display for Fault {
                 "no velocity that satisfies constraint {constraint} was found near the given one"
             ),
             Self::NonFinite { component } => {
-                write!(f, "component {component} of the state is not finite")
+                write!(
+                    f,
+                    "component {component} is not finite (components of the state are counted first, then gaps)"
+                )
             }
         }
     }

@@ -211,7 +211,7 @@ fn new_writes_a_model_that_runs() {
         "{}",
         again.errors
     );
-    for wrong in ["Clock", "2", "wall-clock", "clock.txt"] {
+    for wrong in ["Clock", "2", "wall-clock", "clock.txt", "loop"] {
         let refused = run_on("", &["new", wrong]);
         assert_eq!(refused.exit, Exit::Refused, "{wrong}");
         assert!(
@@ -220,6 +220,49 @@ fn new_writes_a_model_that_runs() {
             refused.errors
         );
     }
+}
+
+/// A model whose second mode has a coordinate less than the first.
+const MODES: &str = "Hop {
+    parameters { k = 1; }
+    modes {
+        pair { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - x; initial { x = 1; y = 2; dot(x) = 3; } }
+        single { coordinates { y; } lagrangian = k*dot(y)^2/2 - y; initial { y = 3; } }
+    }
+    transitions { over: pair -> single when x >= 3 => reset { y = y; dot(y) = dot(y); }; }
+}";
+
+#[test]
+fn a_table_of_a_run_in_modes_starts_members() {
+    let folder = Folder::new("modes");
+    let (model, table) = (folder.file("hop.dal", MODES), folder.path("run.csv"));
+    let run = run(&format!(
+        "simulate {model} --mode single --until 1 --samples 3 --csv {table}"
+    ));
+    assert_eq!(run.exit, Exit::Reached, "{}", run.errors);
+    let ensemble = |mode: &str| {
+        let line = format!("ensemble {model} --mode {mode} --from {table} --until 1 --csv -");
+        super::run(&line)
+    };
+    let done = ensemble("single");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let head = done.output.lines().next().unwrap();
+    assert!(head.contains("in.y") && !head.contains("in.x"), "{head}");
+    assert_eq!(done.output.lines().count(), 4, "{}", done.output);
+    let refused = ensemble("pair");
+    assert_eq!(refused.exit, Exit::Refused);
+    let told = "`pair`, the mode in which the members start";
+    assert!(refused.errors.contains(told), "{}", refused.errors);
+}
+
+#[test]
+fn a_fault_of_a_mode_names_its_coordinate() {
+    let folder = Folder::new("fault");
+    let model = folder.file("hop.dal", MODES);
+    let done = run(&format!("simulate {model} --mode single --set k=-1"));
+    let told = "metric_not_positive (coordinate \"y\"";
+    let all = done.output.clone() + &done.errors;
+    assert!(all.contains(told), "{all}");
 }
 
 #[test]

@@ -260,13 +260,17 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Replaces indices of the part (surface, constraint) in a fault by those of the model.
+    /// Replaces indices of the part (coordinate, surface, constraint) in a fault by those of the model.
     #[inline(always)]
     pub(crate) fn fault(&self, fault: Fault) -> Fault {
         let Some(mode) = self.mode() else {
             return fault;
         };
         match fault {
+            Fault::MetricNotPositive { pivot, value } => Fault::MetricNotPositive {
+                pivot: mode.coordinates.get(pivot).copied().unwrap_or(pivot),
+                value,
+            },
             Fault::SingularSurface { surface } => Fault::SingularSurface {
                 surface: mode.surfaces.get(surface).copied().unwrap_or(surface),
             },

@@ -207,7 +207,7 @@ fn read_members(
 ) -> Result<Members, CliError> {
     let description = model.description();
     let members = match &args.from {
-        Some(path) => listed::read(path, streams.input, description)?,
+        Some(path) => listed::read(path, streams.input, description, model.present_mode())?,
         None => members::varied(&args.vary, args.members, args.random, description)?,
     };
     members::check_start(&members, model, &args.run.state)?;

@@ -3,6 +3,8 @@
 use std::fs::OpenOptions;
 use std::io::Write;
 
+use dalembert_codegen::spec::is_rust_keyword;
+
 use crate::Streams;
 use crate::args::NewArgs;
 use crate::command::build::{Package, library};
@@ -62,7 +64,7 @@ fn is_ending_right(args: &NewArgs) -> bool {
 
 fn refused(args: &NewArgs) -> CliError {
     let given = args.name.display().to_string();
-    let expected = "small letters, digits and `_`, a letter first, such as `inclined_skate`";
+    let expected = "small letters, digits and `_`, a letter first, such as `inclined_skate`; no keyword of Rust";
     CliError::value("NAME", given, expected)
 }
 
@@ -71,7 +73,8 @@ fn model_name(stem: &str) -> Option<String> {
     let is_name = stem.starts_with(|c: char| c.is_ascii_lowercase())
         && stem
             .chars()
-            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && !is_rust_keyword(stem);
     is_name.then(|| {
         let words = stem.split('_').map(|word| {
             let mut letters = word.chars();

@@ -70,6 +70,7 @@ fn component(key: &str, name: &str, [was, value]: [&Value; 2]) -> Difference {
         change: changed(&name, was, value),
         remedy: match (key, was) {
             ("p", _) => "give the momenta of the file by --p".to_owned(),
+            ("parameters", Value::Null) => format!("leave `{name}` out of --set"),
             (_, Value::Null) => format!("leave `{name}` out of --initial"),
             ("parameters", was) => format!("give --set {name}={was}"),
             (_, was) => format!("give --initial {name}={was}"),

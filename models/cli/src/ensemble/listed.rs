@@ -15,15 +15,19 @@ use crate::scalar;
 use crate::sink::is_stdout;
 
 /// Fixed columns of tables that are skipped, because they do not vary a member.
-const OTHERS: [&str; 7] = [
+const OTHERS: [&str; 8] = [
     "t",
     "energy",
     "event",
+    MODE,
     "member",
     "outcome",
     "energy_change",
     "reason",
 ];
+
+/// The column with the mode of a row.
+const MODE: &str = "mode";
 
 /// Limits on the size of a table, which is kept in memory.
 #[derive(Debug, Clone, Copy)]
@@ -39,15 +43,18 @@ const LIMITS: Limits = Limits {
     members: 10_000_000,
 };
 
-/// Reads the members. In a table written by `ensemble`, only the columns `in.NAME` count.
+/// Reads the members. In a table written by `ensemble`, only the columns `in.NAME` count. `mode` is the mode in which
+/// the members start, for a model with modes. Columns without any value belong to coordinates that this mode lacks; they
+/// are left out.
 ///
 /// # Errors
-/// A file that cannot be read, a column that the model does not have, a field that is not a number, a row of more than
-/// a mebibyte, more than ten million rows.
+/// A file that cannot be read, a column that the model does not have, a field that is not a number, a row in another
+/// mode, a row of more than a mebibyte, more than ten million rows.
 pub fn read(
     path: &Path,
     stdin: &mut dyn Read,
     description: &Description,
+    mode: Option<&str>,
 ) -> Result<Members, CliError> {
     let file: Box<dyn Read + '_> = if is_stdout(path) {
         Box::new(stdin)
@@ -60,7 +67,7 @@ pub fn read(
         Box::new(opened?)
     };
     let place = format!("--from {}", path.display());
-    parse(&place, file, description, LIMITS)
+    parse(&place, file, description, mode, LIMITS)
 }
 
 /// Parses the members of a table.
@@ -68,6 +75,7 @@ fn parse(
     place: &str,
     file: impl Read,
     description: &Description,
+    mode: Option<&str>,
     limits: Limits,
 ) -> Result<Members, CliError> {
     let invalid = |reason: String| CliError::Input {
@@ -85,7 +93,8 @@ fn parse(
     let header = reader
         .headers()
         .map_err(|error| invalid(error.to_string()))?;
-    let columns = columns(place, header, description)?;
+    let in_mode = mode.and_then(|mode| Some((header.iter().position(|name| name == MODE)?, mode)));
+    let mut columns = columns(place, header, description)?;
     if columns.is_empty() {
         return Err(invalid(
             "no column has the name of a coordinate, a velocity or a parameter".to_owned(),
@@ -93,6 +102,8 @@ fn parse(
     }
     let mut rows = Vec::new();
     let mut members = 0;
+    // The places of fields without a value.
+    let mut gaps = vec![Vec::new(); columns.len()];
     for record in reader.records() {
         let record = record.map_err(|error| invalid(error.to_string()))?;
         since_row.set(0);
@@ -104,17 +115,60 @@ fn parse(
             )));
         }
         let line = record.position().map_or(0, csv::Position::line);
-        for (index, name, _) in &columns {
+        let place = |name: &str| format!("{place}, line {line}, column `{name}`");
+        if let Some((index, mode)) = in_mode {
+            let found = record.get(index).unwrap_or_default();
+            if found != mode {
+                let expected = format!("`{mode}`, the mode in which the members start (--mode)");
+                return Err(CliError::value(place(MODE), found, expected));
+            }
+        }
+        for ((index, name, _), gaps) in columns.iter().zip(&mut gaps) {
             let text = record.get(*index).unwrap_or_default();
-            let place = || format!("{place}, line {line}, column `{name}`");
-            let number = scalar::parse(text);
-            rows.push(number.map_err(|expected| CliError::value(place(), text, expected))?);
+            let number = match scalar::parse(text) {
+                Err(_) if text.is_empty() && mode.is_some() => {
+                    gaps.push(line);
+                    f64::NAN
+                }
+                number => {
+                    number.map_err(|expected| CliError::value(place(name), text, expected))?
+                }
+            };
+            rows.push(number);
         }
     }
+    leave_out(place, &mut columns, &mut rows, &gaps)?;
     let named = columns
         .into_iter()
         .map(|(_, name, quantity)| (name, quantity));
     Ok(Members::listed(named.collect(), rows, 0))
+}
+
+/// Removes the columns that have no value in any row. `gaps` are the lines without a value, for each column.
+fn leave_out(
+    place: &str,
+    columns: &mut Vec<(usize, String, Quantity)>,
+    rows: &mut Vec<f64>,
+    gaps: &[Vec<u64>],
+) -> Result<(), CliError> {
+    let (width, members) = (columns.len(), rows.len() / columns.len());
+    for ((_, name, _), gaps) in columns.iter().zip(gaps) {
+        if let Some(line) = gaps.first().filter(|_| gaps.len() < members) {
+            let place = format!("{place}, line {line}, column `{name}`");
+            return Err(CliError::value(
+                place,
+                "",
+                "a number in every row, or in none",
+            ));
+        }
+    }
+    let is_kept = |index: usize| gaps[index % width].is_empty();
+    *rows = (rows.iter().enumerate())
+        .filter_map(|(index, value)| is_kept(index).then_some(*value))
+        .collect();
+    let mut index = 0..;
+    columns.retain(|_| index.next().is_some_and(is_kept));
+    Ok(())
 }
 
 /// A reader that stops at a limit of bytes after the last accepted row.
@@ -200,7 +254,7 @@ mod tests {
             row: 100_000,
             members: 1000,
         };
-        let members = parse("--from table.csv", table, &POINT, limits);
+        let members = parse("--from table.csv", table, &POINT, None, limits);
         members
             .map(|members| members.count())
             .map_err(|error| error.to_string())
