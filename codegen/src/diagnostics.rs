@@ -284,29 +284,6 @@ pub fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// For tests: the message of each error, with the source text at its first place.
-#[cfg(test)]
-pub(crate) fn reported(source: &str, diagnostics: &Diagnostics) -> Vec<(String, String)> {
-    let stretch = |at: Location| {
-        let range = at.first.byte_range().start..at.last.byte_range().end;
-        source.get(range).unwrap_or_default().to_owned()
-    };
-    diagnostics
-        .iter()
-        .map(|error| (error.message().to_owned(), stretch(error.places[0].0)))
-        .collect()
-}
-
-/// For tests: the source without the marks `«` and `»`, and the text between them.
-#[cfg(test)]
-pub(crate) fn unmarked(source: &str) -> (String, String) {
-    let marked = source
-        .split_once('«')
-        .and_then(|(_, rest)| rest.split_once('»'))
-        .map_or("", |(marked, _)| marked);
-    (source.replace(['«', '»'], ""), marked.to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

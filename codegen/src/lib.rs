@@ -110,12 +110,7 @@ impl Compiled {
 /// # Errors
 /// Every mistake of the first stage that found any.
 pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics> {
-    compile_within(input, spec::STEPS)
-}
-
-/// Same as [`compile`], with a budget of steps for the algebra.
-fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
-    compile_spec(&spec::parse(input)?, steps)
+    compile_spec(&spec::parse(input)?, spec::STEPS)
 }
 
 /// All stages of a parsed model, with a budget of steps for the algebra.
@@ -318,43 +313,4 @@ fn refuse_oversize(
         diagnostics.error(spec.name.at, text).help(help);
     }
     diagnostics.finish(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const DECLARATION: &str = "
-        P {
-            coordinates { x; y; z; theta: angle; }
-            parameters { m > 0 = 1; k >= 0 = 2; e in [0, 1] = 1/2; }
-            let r(u, v) = sqrt(1 + u^2 + sin(v)^2);
-            lagrangian = m/2*(dot(x*y)^2 + dot(x)^2 + dot(y)^2 + dot(z)^2) + dot(r(x, theta))^2 + dot(theta)^2
-                - k*r(x, y);
-            constraints { slip: d(z) = x*d(y); hold: d(x + sin(theta)) = 0; }
-            forces { drag: -k*dot(y)*d(y); }
-            impacts { wall: y + r(z, z) >= 0 => newton(e); }
-            outputs { o: multiplier(slip) + energy; }
-            claims { density: none; }
-        }";
-
-    /// Wherever the algebra is given up, the current stage ends and reports that.
-    #[test]
-    fn algebra_may_be_given_up_anywhere() {
-        let compile = |steps| {
-            let tokens = DECLARATION.parse().expect("tokens");
-            compile_within(tokens, steps)
-        };
-        let (mut given_up, mut steps) = (0, 1);
-        while let Err(errors) = compile(steps) {
-            let texts: Vec<&str> = errors.iter().map(|error| error.message()).collect();
-            assert!(
-                texts[0].contains("steps; it was given up here"),
-                "{texts:?}"
-            );
-            given_up += 1;
-            steps += 1 + steps / 16;
-        }
-        assert!(given_up > 50, "only {given_up} budgets were too small");
-    }
 }

@@ -95,8 +95,7 @@ mod tests {
         let declaration =
             "pub P { coordinates { x; } parameters { c in [0, 1]; k in [-2, 1]; m > 0; }
             lagrangian = dot(x)^2/2 - x*c*k*m; }";
-        let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
-        let mut model = compiled.model;
+        let (mut model, _) = crate::claims::derived(declaration);
         let symbols: Vec<SymbolId> = model
             .parameters
             .iter()

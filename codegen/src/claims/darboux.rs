@@ -321,7 +321,6 @@ mod tests {
     #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
     use super::*;
-    use crate::{mechanics, model, spec};
 
     /// Flat metric with `dz = (x + y) dx`: `sqrt(det m)/|xdot + ydot|` is invariant.
     const PARTICLE: &str = "Particle {
@@ -333,9 +332,7 @@ mod tests {
 
     /// For each output: true if it is certified as a factor with the exponents `s` and `k`.
     fn certified(s: (i64, i64), k: (i64, i64)) -> Vec<bool> {
-        let spec = spec::parse(PARTICLE.parse().unwrap()).unwrap();
-        let mut model = model::check(&spec).unwrap();
-        let derivation = mechanics::derive(&mut model);
+        let (mut model, derivation) = crate::claims::derived(PARTICLE);
         let problem = Problem::of(&mut model, &derivation);
         let dynamics = Dynamics::of(&mut model, &derivation);
         let search = Search {

@@ -473,8 +473,7 @@ mod tests {
         let declaration = format!(
             "pub Sample {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - ({potential}); }}"
         );
-        let tokens = declaration.parse().expect("tokens");
-        crate::compile(tokens).expect("a model").model
+        crate::claims::derived(&declaration).0
     }
 
     /// `(x + y)^2 - x^2 - 2 x y - y^2 + part y`

@@ -123,3 +123,12 @@ pub(crate) use symmetry::{check_symmetry, keeps_lagrangian};
 pub use trace::{Operation, Step, Trace};
 pub use undecided::Undecided;
 pub use volume::Volume;
+
+/// For tests: a model and its derived equations.
+#[cfg(test)]
+fn derived(declaration: &str) -> (crate::model::Model, crate::mechanics::Derivation) {
+    let spec = crate::spec::parse(declaration.parse().expect("tokens")).expect("a declaration");
+    let mut model = crate::model::check(&spec).expect("a model");
+    let derivation = crate::mechanics::derive(&mut model);
+    (model, derivation)
+}

@@ -206,7 +206,6 @@ fn term_text(pool: &Pool, term: Term) -> String {
 mod tests {
     use super::*;
     use crate::claims::fit::has_points;
-    use crate::{mechanics, model, spec};
     use dalembert_expr::Assumption;
 
     #[test]
@@ -237,9 +236,7 @@ mod tests {
             let hidden = sin(x)*(sin(x)*y + cos(x)*z) + cos(x)*(cos(x)*y - sin(x)*z) - y;
             lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
             constraints { c: (2 + hidden*z)*dot(z) = (x + y)*dot(x); } }";
-        let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
-        let mut model = model::check(&spec).expect("a model");
-        let derivation = mechanics::derive(&mut model);
+        let (mut model, derivation) = crate::claims::derived(source);
         let problem = Problem::of(&mut model, &derivation);
         let is_zero = |pool: &Pool, id: ExprId| pool.zero_test(id) == Verdict::Proved;
         let parts = model.pool.reachable(&problem.roots());

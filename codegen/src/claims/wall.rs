@@ -486,9 +486,8 @@ mod tests {
     fn enclosed<P: RangePoint>(x: f64) -> Option<(f64, f64)> {
         let declaration = "pub Sample { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
             impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
-        let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
-        let mut model = compiled.model;
-        let wall = Wall::of(&mut model, &compiled.derivation, 0, &[]);
+        let (mut model, derivation) = crate::claims::derived(declaration);
+        let wall = Wall::of(&mut model, &derivation, 0, &[]);
         let [first, second] = [0, 1].map(|i| model.coordinates[i].q);
         let mut point = RealPoint::default();
         point.set(first, x);

@@ -21,13 +21,9 @@ mod order;
 mod periodic;
 mod polynomial;
 mod range;
-#[cfg(test)]
-mod refusals;
 mod resolve;
 mod scene;
 mod symbols;
-#[cfg(test)]
-mod tests;
 mod transition;
 mod unknown;
 

@@ -16,8 +16,6 @@ mod literal;
 mod parse;
 mod scalar;
 mod slips;
-#[cfg(test)]
-mod tests;
 
 pub use ast::*;
 pub use keyword::{

@@ -93,6 +93,14 @@ impl Entry {
         Self::known_by(known)
     }
 
+    /// The entry of a system that is made at run time: its description, and a function that makes the system with its
+    /// declared defaults ([`of_system`](dalembert_driver::of_system)).
+    pub fn of_system(description: &'static Description, build: fn() -> Box<dyn AnyModel>) -> Self {
+        Self::known_by(Known {
+            scenes: vec![(WHOLE.to_owned(), Build::Typed(build, description))],
+        })
+    }
+
     /// The entry of the model with this name that a text declares, such as `rolling_disk` for `RollingDisk { .. }`. The
     /// text is loaded once, when a property other than the name is first used.
     ///

@@ -79,5 +79,5 @@ pub use run::{
     Changes, Contact, Control, Ending, Impact, ImpactTally, InputFunction, Piece, Settings, Watch,
     steer,
 };
-pub use typed::{Model, of_form, of_type};
+pub use typed::{Model, of_form, of_system, of_type};
 pub use variation::{Derivatives, Variable, VariationError, differentiate};

@@ -48,8 +48,13 @@ struct Typed<O> {
 
 /// The model of a type, with its declared parameter values.
 pub fn of_type<M: Model + Described + 'static>() -> Box<dyn AnyModel> {
+    of_system(M::with_defaults())
+}
+
+/// The model of a system, with the values of its parameters.
+pub fn of_system<M: Model + 'static>(system: M) -> Box<dyn AnyModel> {
     Box::new(Typed {
-        owner: OfType(M::with_defaults()),
+        owner: OfType(system),
         code: Code::Inlined,
     })
 }

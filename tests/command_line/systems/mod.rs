@@ -1,11 +1,9 @@
 //! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an oscillator
-//! with a view of the plane, a bead that a constraint holds on a line, a mass that is pushed for a short time, and
-//! systems with an unsure event search.
+//! with a view of the plane, a bead that a constraint holds on a line, and systems with an unsure event search.
 //!
 //! All but the last have the metric `m` times the identity.
 
 mod particle;
-mod pushed;
 mod unsure;
 
 use dalembert::declaration::Described;
@@ -23,8 +21,7 @@ use dalembert::{
 };
 use nalgebra::SVector;
 
-use particle::{Particle, field, free, particle, system};
-pub use pushed::Pushed;
+use particle::{Particle, free, particle};
 pub use unsure::Unsure;
 
 /// Quantities that every model reports.

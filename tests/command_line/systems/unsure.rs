@@ -1,10 +1,8 @@
 //! Systems with an unsure event search: it evaluates gaps at nine points of a step and misses impacts between them.
 
 use dalembert::audit::{Audit, Auditor};
-use dalembert::declaration::Described;
 use dalembert::describe::{Description, Initial, Instance, Report};
 use dalembert::effects::{Moment, StepView};
-use dalembert::erased::Held;
 use dalembert::error::ParameterError;
 use dalembert::integrate::Stepper;
 use dalembert::jet::{LENGTH, Work};
@@ -18,7 +16,7 @@ use dalembert_driver::Model;
 
 /// A model whose event search samples the gaps.
 #[derive(Debug, Clone)]
-pub struct Unsure<M>(M);
+pub struct Unsure<M>(pub M);
 
 impl<M: VectorField> VectorField for Unsure<M> {
     type State = M::State;
@@ -198,39 +196,10 @@ impl<M: Lagrangian> Lagrangian for Unsure<M> {
     }
 }
 
-impl<M> Described for Unsure<M>
-where
-    M: Model + Described + Impacting,
-    M::Global: Model + Described + Impacting,
-{
-    const DESCRIPTION: &'static Description = &Description {
-        type_name: M::DESCRIPTION.type_name,
-        name: M::DESCRIPTION.name,
-        documentation: M::DESCRIPTION.documentation.again(),
-        source: M::DESCRIPTION.source.again(),
-        is_first_order: M::DESCRIPTION.is_first_order,
-        coordinates: M::DESCRIPTION.coordinates.again(),
-        parameters: M::DESCRIPTION.parameters.again(),
-        constraints: M::DESCRIPTION.constraints.again(),
-        forces: M::DESCRIPTION.forces.again(),
-        quasi_velocities: M::DESCRIPTION.quasi_velocities.again(),
-        surfaces: M::DESCRIPTION.surfaces.again(),
-        outputs: M::DESCRIPTION.outputs.again(),
-        integrals: M::DESCRIPTION.integrals.again(),
-        scenes: Held::Static(&["all"]),
-        modes: M::DESCRIPTION.modes.again(),
-        view: None,
-    };
-
-    fn with_defaults() -> Self {
-        Self(M::with_defaults())
-    }
-}
-
 impl<M> Instance for Unsure<M>
 where
-    M: Model + Described + Impacting,
-    M::Global: Model + Described + Impacting,
+    M: Model + Impacting,
+    M::Global: Model + Impacting,
 {
     type Global = Unsure<M::Global>;
 
@@ -270,8 +239,8 @@ where
         self.0.inspect(t, state, report)
     }
 
-    fn description(&self) -> &'static Description {
-        <Self as Described>::DESCRIPTION
+    fn description(&self) -> &Description {
+        self.0.description()
     }
 }
 
@@ -312,7 +281,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
             system.gaps(t, &state).as_slice()[surface]
         };
         let mut first: Option<(f64, usize)> = None;
-        for surface in 0..M::Gaps::CAPACITY {
+        for surface in 0..system.surface_count() {
             let is_above =
                 |part: f64| (part == 0.0 && self.left == Some(surface)) || gap(surface, part) > 0.0;
             let fall = PLACES
@@ -378,7 +347,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
 
 impl<M: Impacting> SceneEffects<Unsure<M>> for NineSamples {
     fn law(&self, system: &Unsure<M>, surface: usize) -> Option<Law> {
-        (surface < M::Gaps::CAPACITY).then(|| system.0.law(surface))
+        (surface < system.0.surface_count()).then(|| system.0.law(surface))
     }
 
     fn audit(&self, system: &Unsure<M>, work: &mut dyn FnMut(&mut dyn Auditor<Unsure<M>>)) -> bool {

@@ -11,8 +11,6 @@
 
 mod cascade;
 mod graph;
-#[cfg(test)]
-mod tests;
 
 pub use dalembert_expr::Interval;
 

@@ -128,8 +128,8 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
         |_| Ok(()),
         |drawn| {
             for (stability, arc) in chart.arcs() {
-                let path = points[arc].iter().copied();
-                plane.path(drawn, path.filter(is_finite), colour(stability))?;
+                let path = points[arc].iter().copied().filter(is_finite);
+                plane.path(drawn, &path.collect::<Vec<_>>(), colour(stability))?;
             }
             let marked = chart.branch.points.iter().zip(&points);
             let marked =

@@ -65,7 +65,7 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
         |drawn| {
             for curve in &chart.curves {
                 for stretch in &curve.stretches {
-                    plane.path(drawn, stretch.iter().copied(), curve.colour())?;
+                    plane.path(drawn, stretch, curve.colour())?;
                 }
                 let points = curve.points.iter().copied().filter(is_inside);
                 plane::dots(drawn, points.map(|at| (at, curve.colour())), DOT)?;

@@ -2,9 +2,11 @@
 
 use proc_macro2::{Group, TokenStream, TokenTree};
 
-use super::super::parse;
+use dalembert_codegen::diagnostics::Diagnostics;
+use dalembert_codegen::model;
+use dalembert_codegen::spec::parse;
+
 use super::MODEL;
-use crate::diagnostics::Diagnostics;
 
 #[test]
 fn models_with_tokens_missing_never_panic() {
@@ -12,7 +14,7 @@ fn models_with_tokens_missing_never_panic() {
     for _ in 0..2000 {
         let tokens = thinned(MODEL.parse().unwrap(), &mut random);
         if let Ok(spec) = parse(tokens) {
-            let _ = crate::model::check(&spec).map_err(Diagnostics::into_compile_error);
+            let _ = model::check(&spec).map_err(Diagnostics::into_compile_error);
         }
     }
 }
@@ -25,7 +27,7 @@ fn models_with_single_tokens_missing_never_panic() {
         let mut position = random.next() % 300;
         let tokens = without(MODEL.parse().unwrap(), &mut position);
         if let Ok(spec) = parse(tokens) {
-            let _ = crate::model::check(&spec).map_err(Diagnostics::into_compile_error);
+            let _ = model::check(&spec).map_err(Diagnostics::into_compile_error);
         }
     }
 }

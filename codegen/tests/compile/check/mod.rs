@@ -1,17 +1,17 @@
 //! Test cases for the errors of the check. A case has a message and a source text, in which `«..»` marks the location
 //! of the error.
 
-#![allow(clippy::unwrap_used)] // tests may panic
-
 mod bounds;
 mod impacts;
 mod motion;
 mod names;
 mod values;
 
-use super::check;
-use crate::diagnostics::{Diagnostics, reported, unmarked};
-use crate::spec;
+use dalembert_codegen::diagnostics::Diagnostics;
+use dalembert_codegen::model::check;
+use dalembert_codegen::spec;
+
+use crate::marks::{reported, unmarked};
 
 /// A particle in the plane with further declarations.
 fn particle(rest: &str) -> String {

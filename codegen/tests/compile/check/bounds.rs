@@ -1,7 +1,8 @@
 //! Limits, and several mistakes at once.
 
+use dalembert_codegen::spec;
+
 use super::{KINETIC, check, diagnostics, particle, refused, refused_in, with_lagrangian};
-use crate::spec;
 
 #[test]
 fn a_model_has_at_most_64_coordinates() {

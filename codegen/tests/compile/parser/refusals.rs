@@ -1,7 +1,7 @@
 //! One test case per error of the parser: the message, and the source text that it points at, marked `«..»`.
 
 use super::{lagrangian, read};
-use crate::diagnostics::{reported, unmarked};
+use crate::marks::{reported, unmarked};
 
 /// Checks that there is exactly one error, with this message, at the marked place.
 #[track_caller]

@@ -1,7 +1,5 @@
 //! Tests of the parser; its refusals are tested in `refusals`.
 
-#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
-
 mod families;
 mod missing_tokens;
 mod refusals;
@@ -9,8 +7,8 @@ mod slips;
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-use super::{Declaration, ScalarKind, Spec, parse};
-use crate::diagnostics::Diagnostics;
+use dalembert_codegen::diagnostics::Diagnostics;
+use dalembert_codegen::spec::{Declaration, Operator, Scalar, ScalarKind, Spec, parse};
 
 const MODEL: &str = "
     /// A model.
@@ -32,7 +30,7 @@ const MODEL: &str = "
     }";
 
 fn read(source: &str) -> Result<Spec, Diagnostics> {
-    match crate::read(source.parse().unwrap())? {
+    match dalembert_codegen::read(source.parse().unwrap())? {
         Declaration::Model(spec) => Ok(*spec),
         Declaration::Modes(declared) => panic!("{declared:?}"),
     }
@@ -55,7 +53,7 @@ fn bracketed(kind: &ScalarKind) -> String {
             format!("({}^{})", bracketed(&base.kind), bracketed(&exponent.kind))
         }
         ScalarKind::Sum(terms) => {
-            let signed = |(negative, term): &(bool, super::Scalar)| {
+            let signed = |(negative, term): &(bool, Scalar)| {
                 format!(
                     "{}{}",
                     if *negative { "-" } else { "+" },
@@ -65,17 +63,17 @@ fn bracketed(kind: &ScalarKind) -> String {
             format!("({})", terms.iter().map(signed).collect::<String>())
         }
         ScalarKind::Product(factors) => {
-            let signed = |(operator, factor): &(super::Operator, super::Scalar)| {
+            let signed = |(operator, factor): &(Operator, Scalar)| {
                 let sign = match operator {
-                    super::Operator::Times => '*',
-                    super::Operator::Over => '/',
-                    super::Operator::Modulo => '%',
+                    Operator::Times => '*',
+                    Operator::Over => '/',
+                    Operator::Modulo => '%',
                 };
                 format!("{sign}{}", bracketed(&factor.kind))
             };
             format!("({})", factors.iter().map(signed).collect::<String>())
         }
-        other => super::Scalar {
+        other => Scalar {
             kind: other.clone(),
             at: proc_macro2::Span::call_site().into(),
         }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Cascade, Decided, Planar, planar};
+use dalembert_codegen::report::planar::{Cascade, Decided, Planar, planar};
 
 /// A wheel by the formulas of the thesis: `R`, `P` and `K` of each spoke, (4.14) and (4.15) with m = g = 1.
 fn wheel(alpha: f64, delta: &[f64], l: &[f64]) -> Vec<[f64; 3]> {

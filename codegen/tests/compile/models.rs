@@ -1,12 +1,9 @@
 //! Models that are accepted, and the remarks on them.
 
-#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
-
+use dalembert_codegen::diagnostics::Diagnostics;
+use dalembert_codegen::model::{Assumption, Law, Model, Topology, check};
+use dalembert_codegen::spec;
 use dalembert_expr::{ExprId, Pool, SymbolId};
-
-use super::{Assumption, Law, Model, Topology, check};
-use crate::diagnostics::Diagnostics;
-use crate::spec;
 
 const DISK: &str = "
     /// Vertical rolling disk on an elliptical table.
