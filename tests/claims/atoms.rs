@@ -59,8 +59,8 @@ fn a_line_inside_and_outside_of_the_sine() {
     }
 }
 
-/// Expressions that are identically 0. A verdict that took one of them for a number other than 0 would deny the
-/// density.
+/// Expressions that are identically 0. A verdict that took one of them for a number other than 0 would refute
+/// the density.
 #[test]
 fn related_atoms_are_not_taken_for_independent_ones() {
     let relations = [
@@ -166,7 +166,7 @@ fn functions_with_kinks_are_refused_in_metric_and_forms() {
     }
 }
 
-/// Outside the domain of a root or logarithm, residues exist but real values do not.
+/// Outside the domain of a root, logarithm or arcsine there are values modulo primes, but no real values.
 #[test]
 fn parts_without_real_values_prove_nothing() {
     for f in [
@@ -186,7 +186,7 @@ fn parts_without_real_values_prove_nothing() {
     }
 }
 
-/// The root is real for `y >= 9` alone.
+/// The root is real only for `y >= 9`.
 #[test]
 fn real_values_are_looked_for_far_out() {
     let source = particle("x; y; z;", FLAT, "sqrt(y - 9)");

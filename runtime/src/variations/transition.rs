@@ -155,7 +155,7 @@ fn passing(t: f64) -> Dual {
 /// Rates at an arrival by free motion.
 ///
 /// # Errors
-/// If the arrival has no derivative: a grazing impact or a corner.
+/// [`Undefined`] for a grazing impact, a corner, or a fault of the rates.
 pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -297,7 +297,7 @@ impl Strike {
         if focused.is_some() {
             match collision.as_slice()[0].is_below_zero() {
                 Some(true) => {}
-                // The impulse of the instantaneous constraints alone has reversed the approach.
+                // The impulse of the instantaneous constraints has already reversed the approach.
                 Some(false) => return Ok(Some(after)),
                 None => return Ok(None),
             }
