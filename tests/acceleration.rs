@@ -15,7 +15,7 @@ use dalembert_tests::sampling::system;
 /// to `f64`.
 const TOLERANCE: f64 = 1e-12;
 
-/// A model derived again from its source text.
+/// A model, its derivation and its dynamics on D, from the source text.
 fn derive(name: &str) -> (Model, Derivation, Dynamics) {
     let spec = spec::parse(system(name).description().source.parse().expect("tokens"))
         .expect("a declaration");

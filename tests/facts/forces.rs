@@ -30,7 +30,7 @@ fn horizontal_rods_at_rest_fall_as_a_beam_on_a_pivot() -> Result<(), Fault> {
     let pendulum = shipped("double_pendulum").model();
     let rate = rate(&pendulum, &[FRAC_PI_2, FRAC_PI_2], &[0.0, 0.0])?;
     let rate = rate.as_ref();
-    // pdot = dL/dq has the torques -(m1 + m2) g l1 and -m2 g l2.
+    // pdot = dL/dq consists of the torques -(m1 + m2) g l1 and -m2 g l2.
     assert!((rate[2] + 2.0 * 9.81).abs() < 1e-14);
     assert!((rate[3] + 9.81).abs() < 1e-14);
     Ok(())
