@@ -60,7 +60,7 @@ static SWAPPED: Text = Text::new(
     }",
 );
 
-/// A point that meets a round peg and leaves it after every impulse: along the peg after a plastic one.
+/// A point that meets a round peg and leaves it after every impulse. After a plastic one it leaves along the tangent.
 static GLANCE: Text = Text::new(
     "Glance {
         coordinates { x; y; }

@@ -1,6 +1,6 @@
-//! Verdicts with independent checks by finite differences. The demand of a field, which is the derivative of `G` along
-//! it that a density requires, is compared with the mean curvature and with the divergence of the motion. Densities are
-//! compared with that divergence, obstructions with brackets.
+//! Verdicts with independent checks by finite differences. The demand of a field is the derivative along it that a
+//! density requires of its logarithm `G`. Demands are compared with the mean curvature and with the divergence of the
+//! motion, densities with this divergence, and obstructions with brackets.
 
 use dalembert_codegen::claims::find_obstruction;
 use dalembert_codegen::model::Coordinate;
