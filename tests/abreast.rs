@@ -63,7 +63,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         if index == WITHOUT_STEPS { 3 } else { 1000 }
     }
 
-    /// An integrator of variable order. Every seventh member has one of order 11.
+    /// An integrator of variable order. Every seventh member has one of the fixed order 11.
     fn stepper(&self, index: usize) -> Taylor<S> {
         let stepper = Taylor::new(self.tolerance);
         match index % 7 {

@@ -1,5 +1,5 @@
-//! Compares the velocities, accelerations and multipliers on D that the claims use with independent values of 50 digits.
-//! Constraints and energy are checked modulo a prime.
+//! Compares the velocities, accelerations and multipliers on D that the claims use with independent values of 50
+//! digits. Constraints and energy are checked modulo a prime.
 
 use dalembert::Instance;
 use dalembert::math::larger;

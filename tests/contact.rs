@@ -124,7 +124,7 @@ fn a_point_leaves_the_loop_where_it_stops_pressing() -> Result<(), Fault> {
         .collect();
     assert!(places[0].0 && !places[1].0 && places[2].0, "{places:?}");
     assert_near("height", &[places[1].1], &[0.5], 1e-11);
-    // The point falls to the other side of the wall, loses its velocity towards the wall, and never leaves it again.
+    // The point falls onto another part of the loop, loses its velocity towards it, and never leaves it again.
     assert_eq!(places.len(), 3, "{places:?}");
     let q = model.position(&run.state);
     let q = q.as_ref();

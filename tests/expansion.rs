@@ -25,7 +25,8 @@ static ALONE: Mutex<()> = Mutex::new(());
 struct Expansion {
     /// The shortest of five times.
     time: Duration,
-    /// The smallest of five ratios of the time to the time of reading the generated code, both measured one after the other.
+    /// The smallest of five ratios of the time to the time of reading the generated code, both measured one after the
+    /// other.
     to_reading: f64,
     /// Characters of the generated code.
     length: usize,

@@ -114,8 +114,8 @@ fn high_powers_of_scaled_sums_keep_their_values() {
     }
 }
 
-/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals finite differences of
-/// the Lagrangian.
+/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals finite differences
+/// of the Lagrangian.
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);

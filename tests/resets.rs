@@ -1,4 +1,5 @@
-//! Compares the emitted law `reset` with the interpreter, and checks it in both forms, in claims and on the command line.
+//! Compares the emitted law `reset` with the interpreter, and checks it in both forms, in claims and on the command
+//! line.
 
 use dalembert::declaration::Described;
 use dalembert::law::Law;

@@ -99,7 +99,7 @@ fn assert_is_interpreted<S: Instance + TaylorField>(
     let mut errors = Vec::new();
     for k in 0..=order {
         let size = largest(&mut interpreted.iter().map(|component| component[k].abs()));
-        // Terms that would cancel exactly leave rounding errors of the size of the first order.
+        // Where exact terms cancel, rounding errors remain. They are relative to the coefficients of order 1.
         let rounding =
             f64::EPSILON * largest(&mut interpreted.iter().map(|component| component[1].abs()));
         let pairs = emitted[k].iter().zip(&interpreted);

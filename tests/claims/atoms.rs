@@ -4,7 +4,7 @@
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer, refusal};
 use dalembert_tests::verified::verified;
 
-/// `dz = f dx` with kinetic energy `T`.
+/// A particle with `dz = f dx` and twice the kinetic energy `kinetic`.
 fn particle(coordinates: &str, kinetic: &str, f: &str) -> String {
     format!(
         "Particle {{ coordinates {{ {coordinates} }} parameters {{ k = 1/3; p > 0 = 2; }}
@@ -126,7 +126,7 @@ fn unrelated_atoms_are_not_taken_for_related_ones() {
     }
 }
 
-/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density on one side of `x = 1/5` only.
+/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density only on one side of `x = 1/5`.
 #[test]
 fn a_root_that_hides_an_absolute_value_proves_nothing() {
     let source = particle("x; y; z;", FLAT, "y + (sqrt((x - 1/5)^2) - (x - 1/5))*x");

@@ -127,8 +127,8 @@ fn vector<S: Described>(values: &[f64]) -> S::Vector {
     S::Vector::of(values)
 }
 
-/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, or to 1 if that
-/// is larger. `change` of the logarithm of the density is added to it.
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, or to 1 if
+/// that is larger. `change` of the logarithm of the density is added to it.
 fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
     let system = S::with_defaults();
     let flow = Flow {

@@ -225,8 +225,8 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
-/// Two linear combinations of holonomic constraints. The determinant of their matrix `F` is not part of the declaration.
-/// The density is `exp(G)` with `G = ln det m - ln det F`.
+/// Two linear combinations of holonomic constraints. The determinant of their matrix `F` is not part of the
+/// declaration. The density is `exp(G)` with `G = ln det m - ln det F`.
 #[test]
 fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     let pair = "Pair { coordinates { x; y; z; w; }

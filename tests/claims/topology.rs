@@ -149,8 +149,8 @@ fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     assert_eq!(verified(&snakeboard(": angle")), Existence::LocalAtLeast);
 }
 
-/// A particle in the plane that moves on the curves `d(x) = f d(y)`. For a function `f` of `x` without zeros, it has the
-/// density `(1 + f^2)/|f|`.
+/// A particle in the plane that moves on the curves `d(x) = f d(y)`. For a function `f` of `x` without zeros, it has
+/// the density `(1 + f^2)/|f|`.
 fn curves(coordinates: &str, f: &str) -> String {
     format!(
         "Curves {{ coordinates {{ {coordinates} }} parameters {{ c > 0 = 3; }}

@@ -253,7 +253,8 @@ fn a_denominator_that_changes_little_costs_no_check() {
     }
 }
 
-/// Asserts that by every adaptive integrator half a turn of the pointer, with the bump in the middle, gives this impulse.
+/// Asserts that half a turn of the pointer, with the bump in the middle, gives this impulse by every adaptive
+/// integrator.
 fn assert_gains(text: &Text, blow: f64) {
     let model = text.model();
     assert!(model.has_narrow_rates());

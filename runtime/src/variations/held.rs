@@ -168,8 +168,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// Refuses an end of held motion at which the field jumps. The contact force does not vanish there, so the motion is
-    /// released for another reason.
+    /// Refuses an end of held motion at which the field jumps. The contact force does not vanish there, so the motion
+    /// is released for another reason.
     pub(super) fn check_release(
         &mut self,
         system: &Sys,

@@ -10,7 +10,8 @@
 //! dz+ = D_z (dz- + f- dT) + D_t dT + D_k dk - f+ dT
 //! ```
 //!
-//! which is the product with the saltation matrix. [`Variations`] is an observer that propagates these derivatives along a run.
+//! These formulas apply the saltation matrix. [`Variations`] is an observer that propagates these derivatives along a
+//! run.
 //!
 //! [`Section`] is the Poincare map of a surface: the map from an arrival at it to a later one, with its derivative.
 //! [`Section::periodic`] finds its fixed points, which are periodic orbits, and their Floquet multipliers.
@@ -79,8 +80,8 @@ pub enum Undefined {
         /// The surface.
         surface: usize,
     },
-    /// The state after an impact is not the result of one application of the law in force, for example because an impact
-    /// policy repeats the law.
+    /// The state after an impact is not the result of one application of the law in force, for example because an
+    /// impact policy repeats the law.
     Unlawful {
         /// Time.
         t: f64,

@@ -14,7 +14,7 @@ use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::state::StateVector;
 
-/// Default maximum of Newton steps.
+/// Default maximum number of Newton steps.
 pub const ITERATIONS: u32 = 50;
 
 /// Maximum number of halvings of one step.
@@ -40,8 +40,8 @@ pub struct Orbit<Sys: Variational> {
     pub residual: f64,
     /// Number of Newton steps.
     pub iterations: u32,
-    /// Number of directions of the section within the constraints, without those of the group. For a state `(q, u)` of N
-    /// coordinates and N - M quasi-velocities, without a group, it is 2 N - M - 1.
+    /// Number of directions of the section within the constraints, without those of the group. For a state `(q, u)` of
+    /// N coordinates and N - M quasi-velocities, without a group, it is 2 N - M - 1.
     pub dimension: usize,
     /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
     pub directions: Sys::Columns,
@@ -174,8 +174,8 @@ where
     }
 
     /// True if a point is its own image up to errors of rounding and of the integrator, and the residual is small
-    /// relative to the length of the orbit. The second condition excludes a motion that comes to rest: it returns to its
-    /// point, but is no orbit.
+    /// relative to the length of the orbit. The second condition excludes a motion that comes to rest: it returns to
+    /// its point, but is no orbit.
     pub(super) fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
@@ -302,7 +302,8 @@ fn finish<Sys: Variational>(
 /// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss (Levenberg-Marquardt).
 ///
 /// Near a family of orbits, `derivative - 1` along the family is as small as the miss, but not 0: undamped steps would
-/// wander along the family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74 (2005)).
+/// wander along the family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74
+/// (2005)).
 fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, columns(system));

@@ -118,8 +118,8 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The section at the surface with index `surface`. Runs use `stepper` and `effects`. A return may take at most the
-    /// time `horizon`.
+    /// The section at the surface with index `surface`. Runs use `stepper` and `effects`. One application of the map,
+    /// or the way to a first arrival, may take at most the time `horizon`.
     pub fn new(
         system: &'a Sys,
         stepper: Step,

@@ -37,9 +37,9 @@ impl<S: StateVector> Slice<S> {
     /// orthonormal basis of the gradients of the section's equations. Returns the number of rows that are excluded from
     /// the directions of the section: `kept`, and the directions of the group that are appended.
     ///
-    /// A direction along which an equation of the section changes leads to other levels of a constraint. Its function is
-    /// the change of the level, and the section keeps all its directions. Any other direction of the group lies along
-    /// the section and is excluded from it.
+    /// A direction along which an equation of the section changes leads to other levels of a constraint. Its function
+    /// is the change of the level, and the section keeps all its directions. Any other direction of the group lies
+    /// along the section and is excluded from it.
     pub(super) fn cut(&mut self, frame: &mut [S], kept: usize, rates: [S; GENERATORS]) -> usize {
         let (mut left_out, mut leaving) = (kept, self.back);
         for rate in rates {

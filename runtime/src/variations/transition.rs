@@ -12,7 +12,8 @@ use crate::record::Event;
 use crate::state::StateVector;
 
 /// Allowed difference between the state after a transition and the result of its law, relative to the largest
-/// component before and after. Corrections of rounding errors are far smaller; any other cause is far larger.
+/// component before and after. Differences from corrections of rounding errors are far smaller; differences from any
+/// other cause are far larger.
 const LAWFUL: f64 = 1e-6;
 
 /// Maximum number of transitions at one moment. A longer sequence means that two modes pass the motion back and forth.
