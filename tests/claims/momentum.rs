@@ -168,7 +168,7 @@ fn trailer(inertia: &str) -> String {
 }
 
 #[test]
-fn the_angle_of_a_trailer_is_the_factor() {
+fn the_rate_of_the_hitch_angle_is_the_factor() {
     let expected = Some("sqrt(det m)/abs(dot(theta0) - dot(theta1))".to_owned());
     assert_eq!(found(&trailer("I1/2*dot(theta1)^2")), expected);
     let massive = "m1/2*(dot(x1)^2 + dot(y1)^2) + I1/2*dot(theta1)^2";

@@ -26,7 +26,7 @@ fn follows_the_cosine() {
 
 /// The textbook equations of the double pendulum, evaluated by hand for two horizontal rods.
 #[test]
-fn horizontal_rods_at_rest_fall_as_a_beam_on_a_pivot() -> Result<(), Fault> {
+fn horizontal_rods_at_rest_feel_the_torques_of_gravity() -> Result<(), Fault> {
     let pendulum = shipped("double_pendulum").model();
     let rate = rate(&pendulum, &[FRAC_PI_2, FRAC_PI_2], &[0.0, 0.0])?;
     let rate = rate.as_ref();
@@ -80,7 +80,7 @@ fn the_direction_falls_as_a_hyperbolic_tangent() {
     let velocity = qdot.as_ref();
     assert!(
         (velocity[1] - 1.6).abs() < 1e-15,
-        "the one that is not named"
+        "the velocity of `y`, which `initial` does not name"
     );
     let run = course(&particle, start.q.as_ref(), velocity, 3.0)
         .tol(1e-13)
