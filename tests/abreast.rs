@@ -7,7 +7,7 @@ use dalembert_models::{BouncingBall, DoublePendulum, PointBilliard, RollingDisk}
 use dalembert_tests::sampling::states;
 
 dalembert::model! {
-    /// Every function of the language in a force, and a gap that has no series.
+    /// Forces with all functions of the language but `log1p` and `asinh`, and a gap that has no series.
     pub EveryFunction {
         coordinates { x; y; }
         parameters { c = 0.3; }
@@ -23,8 +23,8 @@ dalembert::model! {
 
 type Results<S> = Vec<Result<Run<<S as VectorField>::State>, StartError>>;
 
-/// The members of an ensemble. Parameters and lengths of runs alternate. Some runs have length 0, one has a budget of
-/// three steps, and one starts at NaN.
+/// The members of an ensemble. They differ in parameters and in the lengths of their runs. Some runs have length 0, one
+/// has a budget of three steps, and one starts at NaN.
 struct Members<S: VectorField> {
     systems: [S; 2],
     states: Vec<S::State>,
@@ -63,7 +63,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         if index == WITHOUT_STEPS { 3 } else { 1000 }
     }
 
-    /// An integrator of variable order, or for every seventh member of order 11.
+    /// An integrator of variable order. Every seventh member has one of the fixed order 11.
     fn stepper(&self, index: usize) -> Taylor<S> {
         let stepper = Taylor::new(self.tolerance);
         match index % 7 {

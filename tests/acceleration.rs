@@ -1,4 +1,5 @@
-//! Compares the motion on D that the claims use with independent values of 50 digits.
+//! Compares the velocities, accelerations and multipliers on D that the claims use with independent values of 50
+//! digits. Constraints and energy are checked modulo a prime.
 
 use dalembert::Instance;
 use dalembert::math::larger;
@@ -14,7 +15,7 @@ use dalembert_tests::sampling::system;
 /// to `f64`.
 const TOLERANCE: f64 = 1e-12;
 
-/// A model derived again from its source text.
+/// A model, its derivation and its dynamics on D, from the source text.
 fn derive(name: &str) -> (Model, Derivation, Dynamics) {
     let spec = spec::parse(system(name).description().source.parse().expect("tokens"))
         .expect("a declaration");

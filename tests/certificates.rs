@@ -9,7 +9,7 @@ use dalembert_tests::command;
 use serde_json::Value;
 
 dalembert::model! {
-    /// A density with a logarithm, regular on lines that reach to infinity.
+    /// The potential of the density contains a logarithm and is regular on the whole line of `x`.
     pub Spiral {
         coordinates { x; y; th: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
@@ -31,7 +31,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A density that exists on the universal cover alone.
+    /// A density that exists only on the universal cover.
     pub Winding {
         coordinates { x; y; th: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
@@ -41,7 +41,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A charge in a magnetic field, whose translations change the Lagrangian by a total derivative.
+    /// A charge in a magnetic field. Translations along `x` change the Lagrangian by a total derivative.
     pub Charge {
         coordinates { x; y; }
         parameters { e > 0 = 1/2; }
@@ -135,7 +135,8 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A line with a door into a heavier medium and a slit into a groove with an affine constraint.
+    /// The line `x = 0` in a plane has a door into a heavier medium, and elsewhere leads into a groove with an affine
+    /// constraint.
     pub Doors {
         coordinates { x; y; }
         parameters { m > 0 = 2; k = 1/3; }
@@ -156,8 +157,8 @@ dalembert::model! {
     }
 }
 
-/// Invariant differential forms: first-order motion, constraints, forces, moving walls, refraction, transitions between
-/// fields.
+/// Invariant differential forms under first-order motion, constraints, forces, moving walls, refraction, instantaneous
+/// constraints and transitions between fields.
 const FORMS: &str = "
     pub Wall {
         coordinates { x; y; }
@@ -232,7 +233,7 @@ const FORMS: &str = "
         transitions { leftward: right -> left when x <= 0; }
     }";
 
-/// Brackets: canonical momenta in a magnetic field, affine constraints, integrable systems with walls.
+/// Brackets: canonical momenta in a magnetic field, affine constraints, integrable systems with and without walls.
 const BRACKETS: &str = "
     pub Charged {
         coordinates { x; y; }
@@ -263,8 +264,8 @@ const BRACKETS: &str = "
         claims { integrable: momentum(theta), momentum(phi); }
     }";
 
-/// The symplectic form on leaves of integrable constraints and across transitions to leaves of another mode, and forms
-/// with constraints that are not linear.
+/// The symplectic form on leaves of integrable constraints, and across transitions to leaves of another mode. The last
+/// two models have constraints that are not linear in the velocities.
 const LEAVES: &str = "
     pub Hoop {
         coordinates { x; y; }
@@ -366,7 +367,7 @@ fn certificate(model: &str, folder: &Path) -> PathBuf {
 fn checked(files: &[PathBuf]) -> Output {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python/check_certificate.py");
     let output = Command::new("python3").arg(program).args(files).output();
-    output.expect("python3, whose standard library is enough, on the path")
+    output.expect("`python3` on the path (its standard library is enough)")
 }
 
 #[test]
@@ -540,7 +541,7 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         "/0/content/surfaces/0/transition/state/q/2",
         r#""x - y + dot(x)/1000000000""#,
     ),
-    // A wall of a mode with leaves, maps to a mode with more coordinates, a form and a potential.
+    // A wall of a mode with leaves; two maps to a mode with more coordinates; a form; a potential.
     (
         "leaves:shelf",
         "/1/content/surfaces/0/gap",

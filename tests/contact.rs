@@ -43,7 +43,7 @@ static SKATE: Text = Text::new(
     }",
 );
 
-/// Two walls at an angle of 100 degrees, which a point meets at once.
+/// Two walls at an angle of 100 degrees. A point meets them at the same time.
 static WEDGE: Text = Text::new(
     "Wedge {
         coordinates { x; y; }
@@ -87,7 +87,8 @@ fn ran(course: Course<'_, Model>, integrator: Integrator, policies: Policies) ->
 
 #[test]
 fn a_point_held_in_a_bowl_is_a_pendulum() -> Result<(), Fault> {
-    // Period 4 K(sin(1/2)) of the pendulum of length 1 and amplitude 1, by the arithmetic-geometric mean.
+    // Period of the pendulum of length 1 and amplitude 1: four times the complete elliptic integral of modulus
+    // sin(1/2), by the arithmetic-geometric mean.
     let (mut a, mut b) = (1.0_f64, 0.5_f64.cos());
     for _ in 0..6 {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
@@ -123,7 +124,7 @@ fn a_point_leaves_the_loop_where_it_stops_pressing() -> Result<(), Fault> {
         .collect();
     assert!(places[0].0 && !places[1].0 && places[2].0, "{places:?}");
     assert_near("height", &[places[1].1], &[0.5], 1e-11);
-    // The point falls on the other side, loses its velocity towards the wall, and never leaves the wall again.
+    // The point falls onto another part of the loop, loses its velocity towards it, and never leaves it again.
     assert_eq!(places.len(), 3, "{places:?}");
     let q = model.position(&run.state);
     let q = q.as_ref();
@@ -255,7 +256,7 @@ fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     Ok(())
 }
 
-/// A point on a sphere, which leaves it at `cos(phi) = (2 + v^2)/3`.
+/// A point that starts on top of a sphere with the speed `v`. It leaves the sphere at `cos(phi) = (2 + v^2)/3`.
 static SPHERE: Text = Text::new(
     "Sphere {
         coordinates { r; phi; }

@@ -25,14 +25,15 @@ static ALONE: Mutex<()> = Mutex::new(());
 struct Expansion {
     /// The shortest of five times.
     time: Duration,
-    /// The smallest of five ratios of the time to the time of reading the generated code, both measured in succession.
+    /// The smallest of five ratios of the time to the time of reading the generated code, both measured one after the
+    /// other.
     to_reading: f64,
     /// Characters of the generated code.
     length: usize,
 }
 
 /// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16
-/// has a ratio of up to 2.74, depending on the load of the machine.
+/// links has a ratio of up to 2.74, depending on the load of the machine.
 const READINGS: f64 = 3.0;
 /// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;
@@ -187,8 +188,8 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     assert!(time < milliseconds(1000, 7000), "{time:?}");
 }
 
-/// Bounds the time that claims of existence take, conditions on parameters included, for bodies with five coordinates
-/// and a train of five.
+/// Bounds the time of claims that a density exists or that none does, for bodies with five coordinates and a train of
+/// five. The time includes the search for conditions on parameters.
 #[test]
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";

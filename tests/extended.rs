@@ -203,7 +203,7 @@ fn a_wall_that_moves_is_met_at_its_time() {
     let sine = of(1.0) / (of(3.0) - of(1.0) / of(10.0));
     assert_near("time", impact.t, Numbers::asin(sine), 1e-45);
     let cosine = Numbers::sqrt(of(1.0) - sine * sine);
-    // The elastic law changes the speed by twice the speed relative to the wall.
+    // The elastic law reverses the velocity relative to the wall.
     let before = of(3.0) * cosine;
     assert_near("before", impact.before[1], before, 1e-45);
     let wall = cosine / of(10.0);

@@ -36,7 +36,7 @@ static PREY: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A coordinate that restarts at 0 when it reaches 1, and a counter of its restarts.
+    /// Two coordinates that grow, and a counter. When the first coordinate reaches 1, it restarts at 0 and is counted.
     pub Sawtooth {
         const N = 2;
         coordinates { s[N]; turns; }

@@ -28,8 +28,8 @@ const QUANTITIES: [&str; 7] = [
     "mu_C_density_frame",
 ];
 
-/// The frame of the angular velocity in space is singular where the Euler angles are. There the rates of the angles do
-/// not exist, but the energy does.
+/// The frame of the angular velocity in space is singular at the singularities of the Euler angles. There the rates of
+/// the angles do not exist, but the energy does.
 #[test]
 fn a_frame_ends_where_its_angles_do() {
     let ball = shipped("rolling_ball_euler").large([]);
@@ -148,7 +148,7 @@ impl SameMotion {
     }
 }
 
-/// The derivative of `qdot` along the rate of the state, by differences of the emitted velocity.
+/// The derivative of `qdot` along the rate of the state, by finite differences of the velocity.
 fn acceleration<S: System>(system: &S, t: f64, state: &S::State, rate: &S::State) -> Vec<f64> {
     let h = 1e-4;
     let at = |k: f64| {

@@ -6,7 +6,7 @@ use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, is_discrete, state};
 use dalembert_stability::text::{Model, Text};
 
-/// The first wall counts in a window of time only.
+/// The first wall counts only in a window of time.
 static WINDOW: Text = Text::new(
     "Window {
         coordinates { x; }
@@ -46,7 +46,7 @@ static DIP: Text = Text::new(
     }",
 );
 
-/// A transition that counts above the height `2 - top` only.
+/// A transition that counts only above the height `2 - top`.
 static GATE: Text = Text::new(
     "Gate {
         coordinates { x; y; }
@@ -178,7 +178,7 @@ fn a_gap_that_is_negative_inside_a_step_meets_its_condition_there() {
 
 #[test]
 fn motion_along_the_edge_of_a_condition_is_not_behind_it() {
-    // Along `y = 2` rounding errors alone decide the condition.
+    // Along `y = 2` only rounding errors decide the condition.
     let along = Text::new(
         "Along {
             coordinates { x; y; }
@@ -199,7 +199,7 @@ fn motion_along_the_edge_of_a_condition_is_not_behind_it() {
 #[test]
 fn a_chart_that_is_left_for_a_moment_ends_there() {
     for top in [1e-2_f64, 1e-6, 1e-10] {
-        // The flight would reach the height `2 + top` at the time 2.
+        // Without the edge, the flight reaches the height `2 + top` at the time 2.
         let left = 2.0 - (2.0 * top).sqrt();
         let error = 1e-14 / top.sqrt();
         let (outside, inside) = ([0.0, top], [0.0, -top]);

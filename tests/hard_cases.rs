@@ -253,7 +253,8 @@ fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
     }
 }
 
-/// A point under gravity over the curve of the case `alpha`, with treads that reverse the vertical velocity.
+/// A point under gravity over the curve of the case `alpha`. An impact reverses the vertical velocity, as on a
+/// horizontal tread.
 fn treads(alpha: f64) -> Point<1> {
     fn curve<L: Numbers>([a, v0]: [f64; 2], [x, y]: [L; 2]) -> L {
         let (b, slope) = (L::of(a * a), L::of(2.0_f64.sqrt() * v0));

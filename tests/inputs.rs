@@ -175,7 +175,7 @@ fn a_held_input_is_a_constant_for_every_integrator() {
         };
         let run = course.observed(integrator, &mut ());
         assert_eq!(run.outcome, Outcome::Done, "{integrator:?}");
-        // `Dla2` has order 2. All other errors are rounding errors.
+        // `Dla2` has order 2 and larger errors.
         let bound = match integrator {
             Integrator::Dla2 => 1e-6,
             _ => 1e-12,

@@ -85,7 +85,7 @@ fn feedback_acts_in_every_mode() {
     let steered = sledge.with_inputs(|_, state| [-state[1]]);
     let end = run(&steered, start(0.5, 1.0), until);
     assert_near("v", &[end.state[1] / sledge.m], &[expected], 1e-12);
-    // With feedback on ice alone, half of the speed is lost before the gravel; on the gravel drag alone acts.
+    // With feedback only on ice, half of the speed is lost before the gravel. On the gravel only drag acts.
     let on_ice = sledge.with_inputs(|_, state| [if state[2] == 0.0 { -state[1] } else { 0.0 }]);
     let end = run(&on_ice, start(0.5, 1.0), until);
     let expected = 0.5 * (-sledge.c / sledge.m * 0.5).exp();

@@ -14,7 +14,7 @@ use dalembert_tests::sampling::{Random, every_system, states};
 
 type State = <Large as VectorField>::State;
 
-/// A model derived again from its source text.
+/// A model with its derivation and its programs, compiled from the source text.
 fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     let compiled = compile(source.parse().expect("tokens")).expect("a model");
     (compiled.model, compiled.derivation, compiled.programs)
@@ -71,7 +71,7 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     assert_eq!(emitted.as_slice(), interpreted);
 }
 
-/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals differences of L.
+/// High powers of sums that are scaled to values near 1.
 static BUMPS: Text = Text::new(
     "Bumps {
         coordinates { x; }
@@ -85,7 +85,7 @@ static BUMPS: Text = Text::new(
     }",
 );
 
-/// The numbers that come out of these powers exceed the range of `f64`, the values do not.
+/// The powers without their scale factors may exceed the range of `f64`. The values do not.
 #[test]
 fn high_powers_of_scaled_sums_keep_their_values() {
     let system = BUMPS.model();
@@ -114,6 +114,8 @@ fn high_powers_of_scaled_sums_keep_their_values() {
     }
 }
 
+/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals finite differences
+/// of the Lagrangian.
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
@@ -186,8 +188,8 @@ fn programs_are_well_formed() {
     }
 }
 
-/// Asserts that the field keeps the value of every constraint, even off it: `d/dt (eta(qdot) + eta_0) = 0`, by
-/// differences of the residual expression along the rate. Returns the number of constraints.
+/// Asserts that the motion keeps the residual of every constraint, even if it is not 0: `d/dt (eta(qdot) + eta_0) = 0`,
+/// by finite differences of the residual along the rate. Returns the number of constraints.
 fn assert_constraints_are_kept(system: &Large) -> usize {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);

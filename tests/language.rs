@@ -61,7 +61,7 @@ fn model(declarations: &str) -> String {
     format!("Page {{ {common} {lagrangian} {declarations} }}")
 }
 
-/// Half the squares of all velocities, including those of further coordinates.
+/// A Lagrangian: `m/2` times the sum of the squares of all velocities, including those of the row's own coordinates.
 fn lagrangian(declarations: &str) -> String {
     let mut terms = String::from("dot(x)^2 + dot(y)^2 + dot(theta)^2");
     let section = declarations

@@ -24,9 +24,9 @@ fn apply(system: &Large, surface: usize, law: Law, state: &State) -> State {
     after
 }
 
-/// Checks a law with the factor `c` at walls at rest: `G+ = (1 - c) G-` and
-/// `H+ - H- = -(c - c^2/2) G-^2 / dh(pi_D grad h)` on D. These equations are algebraic and hold for positions off the
-/// surface as well.
+/// Checks the laws at walls at rest. For a law with the factor `c`, the gap rate `G` and the energy `H` satisfy
+/// `G+ = (1 - c) G-` and `H+ - H- = -(c - c^2/2) G-^2 / dh(pi_D grad h)` on D. These equations are algebraic and hold
+/// for positions off the surface as well.
 fn check_linear(system: &Large) {
     for state in states(system, 20, 11) {
         for surface in 0..system.description().surfaces.len() {

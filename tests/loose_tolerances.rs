@@ -1,7 +1,7 @@
 //! Impacts at loose tolerances have fewer digits, but none is invented and none is missed.
 //!
 //! The motion of the disk on its table is chaotic. At the tolerance 1e-3 a run soon follows another motion than the
-//! exact one, and may meet the edges ten times as often. The event search is still right: from the state after each
+//! exact one, and may have ten times as many impacts. The event search is still right: from the state after each
 //! impact of the run, the exact motion must meet the same surface next, at the same time up to the error of one flight.
 
 use core::ops::ControlFlow;

@@ -24,8 +24,8 @@ struct Next {
 /// The next impact in a table in closed form, from a point inside or from one on the wall that moves inwards.
 type Ahead = fn(&Model, [f64; 2], [f64; 2]) -> Next;
 
-/// Time at which a line that starts in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the larger root,
-/// in the form without cancellation.
+/// The larger root of `c + 2 b s + a s^2` with `a < 0`, computed without cancellation: the time at which a line leaves
+/// the conic on or inside which it starts.
 fn leaves(a: f64, b: f64, c: f64) -> f64 {
     let root = (b * b - a * c.max(0.0)).sqrt();
     if b >= 0.0 {

@@ -117,7 +117,8 @@ static SLIDER: Text = Text::new(
     }",
 );
 
-/// Two transitions at one time on a moving curve: the constraint of the second mode makes the motion leave it at once.
+/// Two transitions at one time on a moving curve: the constraint of the mode `rough` turns the motion back, so that it
+/// leaves this mode at once.
 static THROWN: Text = Text::new(
     "Thrown {
         coordinates { x; y; z; }
@@ -336,7 +337,7 @@ fn check_wheel(wheel: &Large, stored: &Value) {
     );
     let expected = number(&cycle["multiplier_of_x_dot^2"]);
     let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
-    // The multiplier is a product of factors near 1 and has their rounding errors, even if it is small.
+    // The multiplier is computed from numbers of size 1 and has their rounding errors, even if it is small.
     let error = (multiplier - expected).abs();
     assert!(
         error < 4e-15 && imaginary == 0.0,

@@ -115,7 +115,7 @@ fn moved(state: &State, rate: &State, step: f64) -> State {
     moved
 }
 
-/// Checks that the field keeps the value of every constraint, even off it.
+/// Checks that the motion keeps the residual of every constraint, even if it is not 0.
 fn check_kept(system: &Large) {
     for state in near(system, 8) {
         let (t, h) = (0.0, 1e-5);
@@ -147,7 +147,8 @@ fn the_field_keeps_the_value_of_every_constraint() {
     }
 }
 
-/// Checks that the constraint force obeys Chetaev's rule, by differences of the constraints in the velocities.
+/// Checks that the constraint force obeys Chetaev's rule, by finite differences of the constraints with respect to the
+/// velocities.
 fn check_rule(system: &Large) {
     let n = system.coordinate_count();
     for state in near(system, 8) {

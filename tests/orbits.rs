@@ -184,7 +184,8 @@ fn an_orbit_of_an_angle_closes_after_a_turn() {
     assert_eq!(multipliers, [[1.0, 0.0]]);
 }
 
-/// In the global form states can leave the constraint and its level set. The directions of the section keep both.
+/// In the global form states can leave the constraint and its level set. The directions of the section are tangent to
+/// both.
 #[test]
 fn directions_of_a_section_keep_constraints_and_levels() {
     let bead = Text::new(IntegrableBead::DESCRIPTION.source.value()).model();
@@ -412,8 +413,8 @@ fn multipliers(point: &Value) -> Vec<f64> {
     all.map(|it| it["re"].as_f64().expect("a number")).collect()
 }
 
-/// The reference slope solves `1 + trace + determinant = 0` for the return map of a Runge-Kutta method of fixed step,
-/// with extrapolated central differences. It has about nine digits.
+/// The reference slope solves `1 + trace + determinant = 0` for the derivative of the return map, which was computed by
+/// a Runge-Kutta method of fixed step and extrapolated central differences. It has about nine digits.
 #[test]
 fn the_compass_walker_doubles_its_period_where_a_multiplier_passes_minus_one() {
     const SLOPE: f64 = 0.015_088_437_7;

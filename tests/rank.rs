@@ -66,7 +66,7 @@ static TIMED: Text = Text::new(
     }",
 );
 
-/// One form, which vanishes at the origin only and turns fast near it.
+/// One form, which vanishes only at the origin and turns fast near it.
 static CENTRED: Text = Text::new(
     "Centred {
         coordinates { x; y; z; w; }

@@ -1,6 +1,6 @@
 //! Compares impact times with trajectories in closed form or with more than 30 digits.
 //!
-//! Every case runs with DOP853 at tolerance 1e-13 and with power series at 1e-15. Regular motions (straight lines, the
+//! Most cases run with DOP853 at tolerance 1e-13 and with power series at 1e-15. Regular motions (straight lines, the
 //! disk on a circular table) keep their accuracy over all impacts. On elliptical tables neighbouring motions separate,
 //! so that the same bound applies to the first five impacts only.
 
@@ -165,7 +165,7 @@ fn the_rolling_disk_meets_its_impacts() {
     }
 }
 
-/// The largest error of the first eight impacts of the elastic disk and sleigh on their elliptical tables.
+/// The largest error of the times of the first eight impacts of the elastic disk and sleigh on their elliptical tables.
 fn errors_at(method: Method) -> f64 {
     let largest = |impacts: &Impacts, case: &Value| {
         assert_eq!(impacts.times.len(), 8);
@@ -211,16 +211,18 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
 /// On the circular table the nonholonomic plastic disk tends to a motion along the rim. The gap rate at an impact is
 /// 0.37 times that at the impact before, down to 1e-8. If the gap has the error `eta`, every method finds the time of a
 /// crossing with the error `2 eta / |gap rate|`, and may miss crossings less deep than `eta`. Here `eta` is 1e-13, the
-/// error of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14
-/// at the 15th, 8e-15 at the 16th. This depth is the square of the gap rate over twice the rate at which the gap rate
-/// changes, 8 per second. Impacts after the 14th are left out, since rounding errors decide if the disk meets the rim.
+/// error of a second of integration at tolerance 1e-13. Without the impact, the gap would fall below zero by the square
+/// of the gap rate over twice its second derivative, which is 8. This depth is 4e-13 at the 14th impact, 6e-14 at the
+/// 15th and 8e-15 at the 16th. Impacts after the 14th are left out, since rounding errors decide if the disk meets the
+/// rim.
 fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
     let rate = |k: usize| number(&case["impacts"][k]["dh_minus"]).abs();
     assert_times(label, impacts, case, 10, billionth);
     assert_times(label, impacts, case, 14, |k| (2e-13 / rate(k)).max(1e-9));
 }
 
-/// Tolerances, and errors at impact 20 of a handwritten DOP853 in velocities. The elliptical table amplifies errors.
+/// Tolerances, and errors of the time of impact 20 by a handwritten DOP853 in velocities. The elliptical table
+/// amplifies errors.
 const BY_HAND: [(f64, f64); 5] = [
     (1e-6, 9.7e-2),
     (1e-8, 5.2e-5),
@@ -398,7 +400,7 @@ fn the_bouncing_ball_meets_its_impacts() {
     }
 }
 
-/// The largest error of the first eight impacts of the elastic sleigh billiards at each tolerance.
+/// The largest error of the times of the first eight impacts of the elastic sleigh billiards, at each tolerance.
 fn ladder(tolerances: &[f64], integrator: Integrator) -> Vec<f64> {
     let file = read("chaplygin_sleigh_trajectories");
     let worst = |tol: f64| {
@@ -436,9 +438,9 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
         / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
 }
 
-/// With error control per step and an error estimate of order q, the global error falls like tol^(p/(q + 1)). The
-/// exponent is 8/8 for DOP853 and 5/5 for Dormand-Prince 5(4). Power series change their order with the tolerance;
-/// their exponent is about 1.
+/// For a method of order p with error control per step and an error estimate of order q, the global error falls like
+/// tol^(p/(q + 1)). The exponent is 8/8 for DOP853 and 5/5 for Dormand-Prince 5(4). Power series change their order
+/// with the tolerance; their exponent is about 1.
 #[test]
 fn errors_fall_with_the_tolerance() {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];

@@ -1,4 +1,5 @@
-//! The emitted law `reset`: compared with the interpreter, in both forms, in claims and on the command line.
+//! Compares the emitted law `reset` with the interpreter, and checks it in both forms, in claims and on the command
+//! line.
 
 use dalembert::declaration::Described;
 use dalembert::law::Law;

@@ -191,7 +191,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A disk between a floor on which it does not slip and two smooth walls.
+    /// A disk above a floor on which it does not slip, between two smooth walls.
     Rolled {
         coordinates { x; y; theta; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2 - y;

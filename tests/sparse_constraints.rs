@@ -1,5 +1,5 @@
-//! Many constraints, each coupled to few others. A chain in the positions of its masses with rods as constraints is
-//! compared with the same chain in the angles of its rods.
+//! Many constraints, each coupled to few others. A chain described by the positions of its masses, with rods as
+//! constraints, is compared with the same chain described by the angles of its rods.
 
 use dalembert::law::Law;
 use dalembert::math::larger;
@@ -122,7 +122,7 @@ fn projections_and_impacts_keep_the_rods() {
     }
 }
 
-/// The rods at a light mass between heavy ones on a straight chain are nearly one constraint.
+/// On a straight chain, the two rods at a light mass between heavy ones are nearly dependent constraints.
 #[test]
 fn a_solve_that_would_lose_its_digits_is_refused_with_its_condition() {
     let straight = [0.3; LINKS];

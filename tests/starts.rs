@@ -222,7 +222,7 @@ fn what_stays_is_said_where_parameters_change() {
     let as_heavy = heavy
         .carried(&light, 0.0, &state, Keep::Momenta)
         .expect("a state");
-    // The momentum along the blade stays and the mass is four times as large, so that the speed is a quarter.
+    // The momentum along the blade is kept. The mass is four times as large, so the speed is a quarter.
     let slower = heavy.velocity(0.0, &as_heavy).expect("a state");
     let slower = slower.as_ref();
     let along = slower[0] * 0.3_f64.cos() + slower[1] * 0.3_f64.sin();

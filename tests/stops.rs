@@ -81,7 +81,7 @@ fn the_run_ends_where_the_surface_is_reached() {
         assert_stopped(name, end, 1, 1.0 + root);
         assert!(end.hits.is_empty(), "{name}");
         assert!(end.q[1].abs() < 1e-12, "{name}: {:?}", end.q);
-        // The state is that of arrival.
+        // The state is the one at arrival.
         assert!((end.qdot[1] + root).abs() < 1e-6, "{name}: {:?}", end.qdot);
     });
 }

@@ -70,7 +70,7 @@ fn expand<S: TaylorField>(
 
 /// Asserts that coefficients agree with those of the interpreter to 1e-5 of the largest coefficient of their order,
 /// since the terms of gaps may cancel. The first coefficient is the rate up to rounding errors, since constant factors
-/// are multiplied in another order. Returns the error of every coefficient above rounding errors, relative to itself.
+/// are multiplied in another order. Returns the relative errors of all coefficients that are above rounding errors.
 fn assert_is_interpreted<S: Instance + TaylorField>(
     system: &S,
     jet: &Jet,
@@ -99,7 +99,7 @@ fn assert_is_interpreted<S: Instance + TaylorField>(
     let mut errors = Vec::new();
     for k in 0..=order {
         let size = largest(&mut interpreted.iter().map(|component| component[k].abs()));
-        // Terms that would cancel exactly leave rounding errors of the size of the first order.
+        // Where exact terms cancel, rounding errors remain. They are relative to the coefficients of order 1.
         let rounding =
             f64::EPSILON * largest(&mut interpreted.iter().map(|component| component[1].abs()));
         let pairs = emitted[k].iter().zip(&interpreted);
@@ -350,7 +350,7 @@ fn orders_and_work_are_as_stored() {
             (steps, steps * order as u64, steps),
             "{tol:e}"
         );
-        // The rate is evaluated at the start and at the end of every step.
+        // The rate is evaluated at the start of the run and at the end of every step.
         assert_eq!(
             (counters.rate_evaluations, counters.rejected),
             (steps + 1, 0),
@@ -359,7 +359,8 @@ fn orders_and_work_are_as_stored() {
     }
 }
 
-/// Two bodies that collide under their attraction, and friction that changes its sign where the motion turns.
+/// Two bodies at the distance `r` that collide under their attraction, and an oscillator `x` with dry friction, whose
+/// force jumps where the velocity changes its sign.
 static ROUGH: Text = Text::new(
     "Rough {
         coordinates { r; x; }

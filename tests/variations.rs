@@ -60,7 +60,7 @@ static SWAPPED: Text = Text::new(
     }",
 );
 
-/// A point that meets a round peg and leaves it after every impulse: along the peg after a plastic one.
+/// A point that meets a round peg and leaves it after every impulse. After a plastic one it leaves along the tangent.
 static GLANCE: Text = Text::new(
     "Glance {
         coordinates { x; y; }
@@ -302,8 +302,8 @@ fn derivatives_are_limits_of_differences() {
     check_differences(&everything, start, &[(0, Law::Newton(0.75))], 1.5);
 }
 
-/// The laws that are impulses. A declared reset has its derivative in `derivatives_are_limits_of_differences`, and
-/// nothing follows a stop.
+/// The laws that are impulses. `derivatives_are_limits_of_differences` checks declared resets, and nothing follows
+/// a stop.
 #[test]
 fn every_law_has_its_derivative() {
     let laws = [

@@ -12,8 +12,9 @@ use crate::state::StateVector;
 /// contact, the energy changes by the sum of all work, up to the error of the integrator. Impacts change the energy as
 /// well.
 ///
-/// Powers are integrated over each part of the run by the Gauss-Legendre rule of 16 points on the dense output, which
-/// every step then computes. To use another observer as well, pass the pair of them to the run.
+/// Powers are integrated over each part of the run by the Gauss-Legendre rule of 16 points on the dense output.
+/// Every step must then build its dense output. To use another observer as well, pass the pair `(work, observer)` to
+/// the run.
 ///
 /// # Examples
 ///

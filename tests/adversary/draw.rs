@@ -22,7 +22,7 @@ impl Draw {
         choices[self.below(choices.len())]
     }
 
-    /// True in one of `among` cases.
+    /// True with probability `1/among`.
     pub fn one_in(&mut self, among: usize) -> bool {
         self.below(among) == 0
     }

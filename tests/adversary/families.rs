@@ -68,17 +68,18 @@ fn potential(draw: &mut Draw) -> Case {
     let kind = draw.below(5);
     let mut is_smooth = true;
     match kind {
-        // A period.
+        // A constant slope along an angle: the form is closed, but has a period.
         1 => {
             let size = draw.choice(&["1", "1/7", "1e-3", "1e-9"]);
             slopes[0].push(number(size));
         }
-        // A curl, everywhere or in a box.
+        // A curl, everywhere.
         2 => {
             let size = draw.choice(&["1", "1e-3", "1e-9", "1e-15"]);
             let place = Coordinate(2);
             slopes[0].push(Product(vec![number(size), place]));
         }
+        // A curl in a box.
         3 => {
             let lines: Vec<usize> = which.iter().copied().filter(|i| !IS_ANGLE[*i]).collect();
             let mut factors = vec![number(draw.choice(&["1", "1/100"])), bump(draw, &lines)];
@@ -86,7 +87,7 @@ fn potential(draw: &mut Draw) -> Case {
             slopes[0].push(Product(factors));
             is_smooth = false;
         }
-        // A function of a coordinate on a line.
+        // The form stays exact: the slope along a line depends on that coordinate only.
         4 => slopes[1].push(shifted(draw, 2)),
         _ => {}
     }
@@ -208,7 +209,7 @@ fn quantity(draw: &mut Draw) -> Case {
         other => format!("(2 + sin({}))", other.text(&NAMES)),
     };
     let name = NAMES[direction];
-    // A force in the other directions does no work.
+    // The force in the other two directions does no work.
     let [a, b] = [1, 2].map(|k| NAMES[(direction + k) % count]);
     let velocity = draw
         .choice(&["1", "-dot(V)", "-dot(V)^3"])
@@ -285,7 +286,7 @@ fn systems(draw: &mut Draw) -> Case {
 }
 
 /// Translations of a Lagrangian with an added form. They are symmetries if and only if the Lie derivative of the form
-/// along them is exact.
+/// along them is closed.
 fn gauge(draw: &mut Draw) -> Case {
     let count = 3;
     let added = function(draw, &IS_ANGLE, &[0, 1, 2], 2);
@@ -315,7 +316,7 @@ fn gauge(draw: &mut Draw) -> Case {
             terms.join(" + ")
         ),
         claim: format!("symmetry: {translation}"),
-        // Along the growing translation `x*dot(th)` changes by `(1 + t)*dot(th)`, which is not exact.
+        // Along the growing translation `x*dot(th)` changes by `(1 + t)*dot(th)`, whose form is not closed.
         is_true: match kind {
             1 => !is_growing,
             2 => false,
@@ -325,7 +326,7 @@ fn gauge(draw: &mut Draw) -> Case {
     }
 }
 
-/// A parameter whose default may be 0, for which the density does not exist.
+/// A parameter whose default may be 0. At 0 no density exists.
 fn exceptional(draw: &mut Draw) -> Case {
     let (value, is_zero) =
         draw.choice(&[("0", true), ("1", false), ("1/3", false), ("1e-9", false)]);

@@ -105,7 +105,7 @@ impl Function {
     }
 }
 
-/// A shift of a coordinate: `x - 7`, `x - 1/3`, `x - 40.5`.
+/// A coordinate minus a number, such as `x - 17` or `x - 1/3`.
 pub fn shifted(draw: &mut Draw, i: usize) -> Function {
     let place = draw.choice(&["0", "1/3", "2", "-5", "17", "40.5", "-1000"]);
     Sum(vec![Coordinate(i), number(format!("-({place})"))])

@@ -8,7 +8,7 @@
 //! | `quantity` | forces that are 0 by an identity, act only in a box, or are far below rounding errors |
 //! | `systems` | known systems in other coordinates |
 //! | `gauge` | translations of Lagrangians with an added form, exact or not |
-//! | `exceptional` | parameters whose default value is exceptional, and others |
+//! | `exceptional` | a parameter whose default may be an exceptional value, at which no density exists |
 //! | `wall` | impacts on a part of a curve |
 //!
 //! The quick test uses fixed seeds. `ADVERSARY_SEED` sets the first seed, and `ADVERSARY_CASES` the number of cases. A

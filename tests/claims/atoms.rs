@@ -4,7 +4,7 @@
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer, refusal};
 use dalembert_tests::verified::verified;
 
-/// `dz = f dx` with kinetic energy `T`.
+/// A particle with `dz = f dx` and twice the kinetic energy `kinetic`.
 fn particle(coordinates: &str, kinetic: &str, f: &str) -> String {
     format!(
         "Particle {{ coordinates {{ {coordinates} }} parameters {{ k = 1/3; p > 0 = 2; }}
@@ -59,8 +59,8 @@ fn a_line_inside_and_outside_of_the_sine() {
     }
 }
 
-/// Expressions that are identically 0. A verdict that took one of them for a number other than 0 would deny the
-/// density.
+/// Expressions that are identically 0. A verdict that took one of them for a number other than 0 would refute
+/// the density.
 #[test]
 fn related_atoms_are_not_taken_for_independent_ones() {
     let relations = [
@@ -126,7 +126,7 @@ fn unrelated_atoms_are_not_taken_for_related_ones() {
     }
 }
 
-/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density on one side of `x = 1/5` only.
+/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density only on one side of `x = 1/5`.
 #[test]
 fn a_root_that_hides_an_absolute_value_proves_nothing() {
     let source = particle("x; y; z;", FLAT, "y + (sqrt((x - 1/5)^2) - (x - 1/5))*x");
@@ -166,7 +166,7 @@ fn functions_with_kinks_are_refused_in_metric_and_forms() {
     }
 }
 
-/// Outside the domain of a root or logarithm, residues exist but real values do not.
+/// Outside the domain of a root, logarithm or arcsine there are values modulo primes, but no real values.
 #[test]
 fn parts_without_real_values_prove_nothing() {
     for f in [
@@ -186,7 +186,7 @@ fn parts_without_real_values_prove_nothing() {
     }
 }
 
-/// The root is real for `y >= 9` alone.
+/// The root is real only for `y >= 9`.
 #[test]
 fn real_values_are_looked_for_far_out() {
     let source = particle("x; y; z;", FLAT, "sqrt(y - 9)");

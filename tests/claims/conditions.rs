@@ -35,8 +35,8 @@ fn suslov_needs_a_principal_axis() {
     assert_eq!(conditions(&suslov), ["I13 = 0 and I23 = 0"]);
 }
 
-/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are
-/// at one point, and the constraints are dependent where the blades are parallel.
+/// `b = 0` alone is not enough: the mass is still at the distance `a` from the hinge. If both offsets are 0, the blades
+/// are at one point, and the constraints are dependent where the blades are parallel.
 #[test]
 fn the_roller_racer_needs_both_offsets_to_vanish() {
     let mut scheme = Scheme::of(&visible_system("roller_racer"));

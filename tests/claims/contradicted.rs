@@ -1,8 +1,8 @@
 //! True claims of models are proved. False claims are refuted at their line, with numbers that can be verified: negated
 //! claims, and claims with a wrong sign, parameter, exponent or component.
 //!
-//! `dalembert_tests::witness` compares the numbers of a message with differences along the emitted motion, with the
-//! emitted impact, and with brackets in double precision.
+//! `dalembert_tests::witness` compares the numbers of a message with finite differences along the emitted motion, with
+//! the emitted impact, and with brackets in double precision.
 
 use dalembert::{Instance, StateVector};
 use dalembert_codegen::claims::Verdict;

@@ -27,7 +27,7 @@ fn friction_contracts_and_what_does_no_work_on_d_does_not() {
     for harmless in [
         // Friction across the blade.
         "-c*(-sin(theta)*dot(x) + cos(theta)*dot(y))*(-sin(theta)*d(x) + cos(theta)*d(y))",
-        // A gyroscopic force, and a force that depends on the position alone.
+        // A gyroscopic force, and a force that depends only on the position.
         "c*(dot(x)*d(theta) - dot(theta)*d(x))",
         "(x - y)*d(theta)",
         // The divergences of friction and of its opposite cancel.
@@ -82,7 +82,7 @@ fn affine_constraints_add_the_divergence_of_their_drift() {
     );
 }
 
-/// The density of a round ball is 1. That of a ball with an axis of symmetry is `sqrt(det m)`.
+/// For a round ball the density is 1. For a ball with an axis of symmetry it is `sqrt(det m)`.
 #[test]
 fn balls_on_a_turning_table_keep_a_volume() {
     let table = |inertia: &str| {

@@ -1,6 +1,7 @@
 //! Emitted implementations of `InvariantVolume`. Their text is the stored one. Their values are those of the
-//! interpreter and of the reference, and the emitted motion preserves the volumes. A model without a claim or without a
-//! closed form has none. `golden.rs` says how to accept changes of the stored texts.
+//! interpreter and of the reference, and the emitted motion preserves the volumes. There is none for a model without a
+//! claim of a density, or if the logarithm of the density is neither a closed form nor an integral over the positions.
+//! `golden.rs` says how to accept changes of the stored texts.
 
 use dalembert::describe::Report;
 use dalembert::math::larger;
@@ -126,8 +127,8 @@ fn vector<S: Described>(values: &[f64]) -> S::Vector {
     S::Vector::of(values)
 }
 
-/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is
-/// added to the logarithm of the density.
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, or to 1 if
+/// that is larger. `change` of the logarithm of the density is added to it.
 fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
     let system = S::with_defaults();
     let flow = Flow {
@@ -278,7 +279,7 @@ fn what_is_open_or_about_other_things_emits_no_volume() {
     }
     let found = emitted(&particle("claims { density: exact; }"));
     assert!(found.contains("fn log_density"), "{found}");
-    // A density that is stated, without a search.
+    // A stated density needs no search.
     let stated = emitted(&particle("claims { density = sqrt(1 + y^2); }"));
     assert!(stated.contains("fn log_density"), "{stated}");
 }

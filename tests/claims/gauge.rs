@@ -54,7 +54,7 @@ fn falls_are_the_same_at_every_height() {
     assert!(found.starts_with("proved"), "{found}");
 }
 
-/// Changes of the Lagrangian that are linear in the velocities but no total derivatives, and quadratic changes.
+/// Changes of the Lagrangian that are affine in the velocities but no total derivatives, and quadratic changes.
 #[test]
 fn other_changes_of_the_lagrangian_are_refuted() {
     for (declarations, claim) in [

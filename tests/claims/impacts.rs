@@ -46,7 +46,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A ball on a rotating table between walls with several laws: affine constraints.
+    /// A ball on a rotating table (affine constraints) between walls with several laws.
     pub WalledTable {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { r > 0 = 1; k > 0 = 2/3; Om = 1/2; }

@@ -137,7 +137,8 @@ fn other_forms_of_the_same_distribution_have_the_same_verdict_and_volume() {
     assert_eq!(compared.count(), 15);
 }
 
-/// The system in coordinates `Q` with `q_i = Q_i + f(Q_(i+1))`. The map is invertible. Coordinates on intervals stay.
+/// The system in coordinates `Q` with `q_i = Q_i + f(q_(i+1))`. The map is invertible. Coordinates on intervals do not
+/// change.
 fn bent(scheme: &Scheme) -> Scheme {
     let mut other = scheme.clone();
     let names: Vec<_> = scheme
@@ -198,7 +199,7 @@ fn the_order_of_coordinates_and_constraints_does_not_matter() {
 fn assert_same_for_a_thousand_seeds(name: &str, expected: Existence) {
     let source = declaration(&visible_system(name));
     for seed in 0..1000 {
-        // Small and large seeds: the seeds of builds are hashes.
+        // Seeds are small or large, because the seeds of builds are hashes.
         let seed = if seed % 2 == 0 {
             seed
         } else {

@@ -168,7 +168,7 @@ fn trailer(inertia: &str) -> String {
 }
 
 #[test]
-fn the_angle_of_a_trailer_is_the_factor() {
+fn the_rate_of_the_hitch_angle_is_the_factor() {
     let expected = Some("sqrt(det m)/abs(dot(theta0) - dot(theta1))".to_owned());
     assert_eq!(found(&trailer("I1/2*dot(theta1)^2")), expected);
     let massive = "m1/2*(dot(x1)^2 + dot(y1)^2) + I1/2*dot(theta1)^2";
@@ -218,7 +218,7 @@ fn a_density_on_the_covering_space_does_not_end_the_search() {
     assert_eq!(found(robot).as_deref(), Some("1/abs(dot(theta))"));
 }
 
-/// Gravity turns the sleigh, so that no power of `|thetadot|` is invariant; friction contracts.
+/// Gravity turns the sleigh, so that no power of `|thetadot|` is an invariant density. Friction contracts volumes.
 #[test]
 fn nothing_is_found_where_torque_or_friction_breaks_the_factor() {
     let sleigh = |potential: &str, forces: &str| {

@@ -1,5 +1,5 @@
-//! Compares shipped models with `reference/invariant_densities.json`: theta on D, existence, differences of the
-//! logarithm of the density, and the effect of elastic impacts off D.
+//! Compares shipped models with `reference/invariant_densities.json`: the density form theta and its values on D,
+//! existence, differences of the logarithm of the density, and the effect of elastic impacts off D.
 
 use dalembert_cli::Exit;
 use dalembert_codegen::claims::{Equation, find_conditions};
@@ -52,7 +52,8 @@ fn theta_on_d_agrees() {
         let decided = decided(&entry);
         for point in entry["points"].as_array().expect("points") {
             let q = numbers(&point["q"]);
-            // Vectors of the basis of D have one unit independent velocity. The constraints give the dependent ones.
+            // In each vector of the basis of D, one independent velocity is 1 and the others are 0. The constraints
+            // determine the dependent velocities.
             let dependent: Vec<_> = match name(&entry) {
                 "chaplygin_sleigh" | "holonomic_bead_on_ellipses" => vec![1],
                 _ => vec![0, 1],
@@ -85,7 +86,7 @@ fn existence_agrees() {
         if exists == *expected {
             continue;
         }
-        // The density exists only at these values of the parameters.
+        // There is no density at generic values of the parameters, but one at these values.
         assert_eq!(*expected, Value::Bool(true), "{}", name(&entry));
         let exactness = decided.exactness.clone().expect("a verdict");
         let scan = find_conditions(&mut decided.model, &decided.problem, &exactness, 1);

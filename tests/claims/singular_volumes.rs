@@ -66,7 +66,7 @@ impl Singular {
             + power * self.density.exponent.to_f64() * self.factor(t, at).abs().ln()
     }
 
-    /// The largest divergence at random states away from `l = 0`, relative to its terms.
+    /// The largest divergence at random states away from `l = 0`, relative to its terms, or to 1 if that is larger.
     fn divergence(&self, motion: impl Fn(f64, &[f64]) -> Vec<f64>, exponents: [f64; 2]) -> f64 {
         let mut random = Random::new(23);
         let mut largest = 0.0_f64;

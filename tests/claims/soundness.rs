@@ -5,7 +5,7 @@ use dalembert_codegen::claims::Verdict;
 use dalembert_tests::claim::Outcome::{Proved, Refused, Refuted, Undecided};
 use dalembert_tests::claim::{Outcome, check, verdict};
 
-/// A free particle. Functions of the velocities are conserved, and moments such as `x*dot(y) - y*dot(x)`.
+/// A free particle. Functions of the velocities are conserved, and so are moments such as `x*dot(y) - y*dot(x)`.
 const FREE: &str = "coordinates { x; y; theta: angle; } parameters { m > 0 = 1; k > 0 = 2; z = 0; }
     lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);";
 

@@ -94,7 +94,7 @@ fn impacts_happen_where_the_surface_counts() {
         "conserved under w: dot(x)",
         NOWHERE,
     );
-    // Before an impact the velocity has the sign of an approach.
+    // Before an impact the gap rate is negative.
     at(
         "x >= 0",
         "conserved under w: abs(dot(x)) + dot(x)",

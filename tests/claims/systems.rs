@@ -41,7 +41,7 @@ fn suslov_has_a_density_iff_the_axis_is_principal() {
     );
 }
 
-/// Veselova's constraint, with a fixed axis in space, keeps a volume for every inertia.
+/// Veselova's constraint, on the angular velocity along an axis fixed in space, keeps a volume for every inertia.
 #[test]
 fn constraints_of_fixed_axis_in_space_keep_a_volume() {
     let parameters = "A > 0 = 3; B > 0 = 4; C > 0 = 5; D = 1/2; E = 1/3;";
@@ -225,8 +225,8 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
-/// Two combinations of holonomic constraints, by a matrix `F` whose determinant is not part of the declaration. The
-/// density is `G = ln det m - ln det F`.
+/// Two linear combinations of holonomic constraints. The determinant of their matrix `F` is not part of the
+/// declaration. The density is `exp(G)` with `G = ln det m - ln det F`.
 #[test]
 fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     let pair = "Pair { coordinates { x; y; z; w; }

@@ -8,7 +8,7 @@ use dalembert_tests::verdict::{Answer, Decided, Existence, answer};
 use dalembert_tests::verified::verified;
 use dalembert_tests::visible::{declaration, visible_system};
 
-/// A system of the collection, with some of its angles replaced by coordinates on a line.
+/// A system of `reference/verdicts_visible.json`, with some of its angles replaced by coordinates on a line.
 fn unwrapped(name: &str, angles: &[&str]) -> String {
     let mut source = declaration(&visible_system(name));
     for angle in angles {
@@ -149,7 +149,8 @@ fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     assert_eq!(verified(&snakeboard(": angle")), Existence::LocalAtLeast);
 }
 
-/// A particle in the plane that moves on the curves `d(x) = f d(y)`. Its density is `1/f`.
+/// A particle in the plane that moves on the curves `d(x) = f d(y)`. For a function `f` of `x` without zeros, it has
+/// the density `(1 + f^2)/|f|`.
 fn curves(coordinates: &str, f: &str) -> String {
     format!(
         "Curves {{ coordinates {{ {coordinates} }} parameters {{ c > 0 = 3; }}
@@ -233,7 +234,7 @@ fn periods_that_converge_to_zero_refute_nothing() {
     }
 }
 
-/// Friction along a circle that changes its sign under a reflection.
+/// Friction along a circle, with a coefficient that changes its sign under a reflection.
 #[test]
 fn periods_that_a_reflection_makes_vanish_are_proved_to() {
     for f in [

@@ -204,7 +204,8 @@ fn volumes_that_depend_on_time_are_kept() {
     assert!(frozen > 1e-3, "{frozen:e}");
 }
 
-/// The thesis has a factor n before `theta`. The motion does not keep densities with this factor.
+/// W. Clark's thesis has a factor n, the number of coordinates, before `theta`. The motion does not keep densities with
+/// this factor.
 #[test]
 fn a_factor_n_is_seen() {
     let mut seen = 0;
@@ -243,7 +244,8 @@ fn mixed_constraints_have_the_same_volume() {
     let without_minor =
         |t: f64, at: &[f64]| mixed.log_density(t, at) + mixed.determinants(t, &at[..4])[0].ln();
     assert!(divergence(&mixed, 6, without_minor) > 1e-3);
-    // mu_C is divided by the determinant of the combination of constraints. The density of the plain disk is constant.
+    // mu_C is divided by the determinant of the matrix that mixes the constraints. The density of the plain disk is
+    // constant.
     let mixture = |q: &[f64]| ((2.0 + q[0] * q[0]) * (1.0 + q[1] * q[1]) - q[1] * q[2].sin()).ln();
     let mut random = Random::new(8);
     let reference = mixed.configuration(&mut random);

@@ -407,7 +407,8 @@ fn multipliers_that_pass_the_circle_together_are_a_bifurcation() {
     }
 }
 
-/// A driven oscillator whose amplitude `F/sqrt((1 - w^2)^2 + c^2 w^2)` reaches a wall that its orbit does not meet.
+/// A driven oscillator with the amplitude `F/sqrt((1 - w^2)^2 + c^2 w^2)`. The orbit does not meet the wall until its
+/// amplitude, which grows with `F`, is 1.
 #[test]
 fn an_orbit_grazes_a_wall_that_it_has_not_met() {
     let text = "

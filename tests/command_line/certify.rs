@@ -56,7 +56,7 @@ fn certify(text: &str, flags: &str) -> Done {
     run_on(text, &words)
 }
 
-/// Same as [`certify`], with the exit and the JSON document.
+/// Same as [`certify`]; returns the exit and the JSON document.
 fn document(text: &str, flags: &str) -> (Exit, Value) {
     let done = certify(text, &format!("{flags} --json -"));
     assert!(!done.output.is_empty(), "{}", done.errors);

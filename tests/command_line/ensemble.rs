@@ -316,7 +316,7 @@ fn a_file_that_another_run_is_writing_is_refused() {
     assert_eq!(run(&twice).exit, Exit::Refused);
 }
 
-/// The file with the byte at this place replaced.
+/// Replaces the byte of a file at this place.
 fn alter(folder: &Folder, name: &str, place: usize, byte: u8) {
     let mut bytes = fs::read(folder.0.join(name)).unwrap();
     assert_ne!(bytes[place], byte);

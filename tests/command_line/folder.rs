@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-/// A folder of one test, removed at its end. Every test needs a name of its own.
+/// A folder of one test, removed at the end of the test. No two tests may use the same name.
 pub struct Folder(pub PathBuf);
 
 impl Folder {

@@ -55,7 +55,7 @@ fn figures() -> Vec<Figure> {
     vec![figure, work]
 }
 
-/// Runs `gallery` or another command with these figures.
+/// Runs `gallery` or another command with the figures of [`figures`].
 fn run_line(line: &str) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {

@@ -1,5 +1,5 @@
 //! Wrong input gives exit status 2, an empty standard output, and a message that names the flag and the accepted
-//! values. It never panics.
+//! values. The program never panics.
 
 use super::*;
 

@@ -12,7 +12,7 @@ fn picture(name: &str, flags: &str) -> String {
     svg
 }
 
-/// The polyline with the most points of a picture, in units of the picture.
+/// The polyline of a picture that has the most points, in units of the picture.
 fn longest(svg: &str) -> Vec<[f64; 2]> {
     let lines = svg.split("points=\"").skip(1).map(|rest| {
         let points = rest.split('"').next().unwrap();

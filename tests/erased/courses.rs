@@ -1,5 +1,6 @@
-//! Whole runs of the compared models and their scenes by every integrator: emitted behind pointers, loaded from the
-//! text, and for some models inlined. Counters, impacts and states are the same to the bit.
+//! Whole runs of the compared models and their scenes by every integrator. The functions of a model are emitted and
+//! called by pointers, loaded from its text, or, for two models, inlined. Counters, impacts, contacts and final states
+//! are the same to the bit.
 
 use std::sync::Arc;
 

@@ -1,5 +1,6 @@
 //! Compares every emitted kernel, called by a pointer, with the kernel loaded from the text, at random points and over
-//! every kind of number. Values are the same to the bit, and so are guards.
+//! every kind of number. Values have the same bits, except that zeros may differ in sign, and the same guards
+//! fail.
 
 use std::fmt::Debug;
 
@@ -33,7 +34,7 @@ struct Pair<'f> {
 }
 
 impl Pair<'_> {
-    /// The global forms of a form that is not global.
+    /// The global forms of a pair of forms that are not global.
     fn global(self) -> Self {
         let [emitted, loaded] = [self.emitted, self.loaded].map(|form| {
             let global = form.global();
@@ -233,7 +234,7 @@ fn compare_series<L: Drawn>(pair: Pair, points: &[Point<L>]) -> usize {
     compared
 }
 
-/// Compares all kernels and the series over a kind of number. Adds the number of existing ones to `given`.
+/// Compares all kernels and the series over a kind of number. Adds the number of those that exist to `given`.
 fn compare_over<L: Drawn>(pair: Pair, known: &FormOf<'_>, points: usize, given: &mut usize) {
     let mut random = Random::new(3);
     let points: Vec<Point<L>> = (0..points)

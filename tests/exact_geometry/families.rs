@@ -17,7 +17,7 @@ pub struct Case {
     pub until: f64,
     /// Bound on the rate of every distance.
     pub fastest: f64,
-    /// A time at which the motion has left a surface on which it starts.
+    /// A time at which the motion has left the surface on which it starts; 0 if it starts on none.
     pub after: f64,
     distances: Distances,
 }

@@ -2,8 +2,8 @@
 //! integrator misses or invents an impact at any of the tolerances.
 //!
 //! The exact impact comes from conservative advancement along the exact flight: every step in time is the distance from
-//! a surface divided by a bound on its rate, so that no step passes the surface. The gap of the model is a function of
-//! this distance: scaled, flattened, bounded or steep.
+//! a surface divided by a bound on the rate of this distance, so that no step passes the surface. The gap of the model
+//! is a function of this distance: scaled, flattened, bounded or steep.
 //!
 //! | family | surfaces |
 //! |---|---|

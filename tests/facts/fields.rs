@@ -72,7 +72,7 @@ fn without_amplitude_mathieu_s_equation_is_an_oscillator() {
     }
 }
 
-/// Both bounds of the tongue have the series of 28.6(i) in the Digital Library of Mathematical Functions.
+/// Both bounds of the tongue are given by the series of 28.6(i) in the Digital Library of Mathematical Functions.
 #[test]
 fn the_first_tongue_of_mathieu_s_equation_lies_between_its_series() {
     for eps in [-0.1_f64, 0.1] {

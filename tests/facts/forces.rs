@@ -30,7 +30,7 @@ fn horizontal_rods_at_rest_feel_the_torques_of_gravity() -> Result<(), Fault> {
     let pendulum = shipped("double_pendulum").model();
     let rate = rate(&pendulum, &[FRAC_PI_2, FRAC_PI_2], &[0.0, 0.0])?;
     let rate = rate.as_ref();
-    // pdot = dL/dq has the torques -(m1 + m2) g l1 and -m2 g l2.
+    // pdot = dL/dq consists of the torques -(m1 + m2) g l1 and -m2 g l2.
     assert!((rate[2] + 2.0 * 9.81).abs() < 1e-14);
     assert!((rate[3] + 9.81).abs() < 1e-14);
     Ok(())
@@ -80,7 +80,7 @@ fn the_direction_falls_as_a_hyperbolic_tangent() {
     let velocity = qdot.as_ref();
     assert!(
         (velocity[1] - 1.6).abs() < 1e-15,
-        "the one that is not named"
+        "the velocity of `y`, which `initial` does not name"
     );
     let run = course(&particle, start.q.as_ref(), velocity, 3.0)
         .tol(1e-13)

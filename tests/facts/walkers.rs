@@ -83,7 +83,8 @@ fn is_the_dimensionless_walker_in_other_units() -> Result<(), Fault> {
         ("alpha", alpha),
         ("delta", delta),
     ]);
-    // The units are `t0 = m/b` of time, `v0 = m g/b` of velocity and `v0/lf` of the rate, and `eps = v0 t0/lf`.
+    // The units are `t0 = m/b` for time, `v0 = m g/b` for velocity and `v0/lf` for angular velocity. The parameter is
+    // `eps = v0 t0/lf`.
     let (t0, v0) = (m / b, m * g / b);
     let other = shipped("dimensionless_walker").with([
         ("mu", m * lf * lf / inertia),

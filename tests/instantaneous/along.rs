@@ -110,7 +110,8 @@ fn a_wall_that_is_stuck_to_and_one_that_is_not_hold_together_and_two_that_are_do
     assert_eq!(began.0, [second, floor]);
     let held = &run.state.as_ref()[..4];
     assert_near("held", held, &[1.5, 0.0, 1.0, -1.0], 1e-12);
-    // The forces satisfy -1 - 2 nu + lambda = 0 and nu + lambda = 0.
+    // The force `lambda` of the floor and the multiplier `nu` of the second slip constraint satisfy
+    // -1 - 2 nu + lambda = 0 and nu + lambda = 0.
     let forces = forces(&effects.1, &corner, (run.t, &run.state));
     assert_near("forces", &forces, &[0.0, 1.0, 1.0 / 3.0], 1e-12);
     // A second run uses the effects of the first.

@@ -55,7 +55,7 @@ static INCLINE: Text = Text::new(
     }",
 );
 
-/// A rough wall on which a point can move in one direction only.
+/// A rough wall on which a point can move only in one direction.
 static RAIL: Text = Text::new(
     "Rail {
         coordinates { x; y; }

@@ -98,7 +98,7 @@ fn a_ball_comes_onto_a_rough_plane() {
     let mut reflected = 0;
     for case in cases {
         let velocity = numbers(&case["velocity_smooth"]);
-        // At these angles the angular velocity is that of `phi` alone, so that `theta` and `psi` are constant.
+        // At these angles only `phi` changes with this angular velocity; `theta` and `psi` are constant.
         let spin = [velocity[2], velocity[3], velocity[4]];
         let size = spin.iter().map(|rate| rate * rate).sum::<f64>().sqrt();
         let (theta, psi) = ((spin[2] / size).acos(), spin[0].atan2(-spin[1]));
@@ -339,7 +339,7 @@ fn a_wheel_tends_to_its_limit_cycle() {
     assert_eq!(wheel.state_len(), 3);
 }
 
-/// The modes of a model, derived again from its source.
+/// The modes of a model, compiled from its source.
 fn compiled<S: Described>() -> Vec<dalembert_codegen::Compiled> {
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
     let declared = dalembert_codegen::read(tokens).expect("a declaration");
@@ -373,7 +373,7 @@ fn emitted_code_of_modes_is_what_the_interpreter_executes() {
     check_emitted::<refracted_particle::Right>(&modes[1]);
 }
 
-/// A field whose left side leads away from the line `x = 0` below `y = -1`.
+/// A field with two sides. Below `y = -1` the left side leads away from the line `x = 0`.
 static LEAVING: Text = Text::new(
     "Leaving {
         coordinates { x; y; }

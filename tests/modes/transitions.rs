@@ -68,8 +68,8 @@ static WALLED: Text = Text::new(
     }",
 );
 
-/// The point meets the wall of the lower mode at x^2 + y^2 = 4 with y = -1 - t and x = t/2. Upwards it is lifted, and
-/// meets the wall of the upper mode with y = 0.3 + (t - 1).
+/// A point that moves downwards, with y = -1 - t and x = t/2, meets the wall of the lower mode at x^2 + y^2 = 4. A
+/// point that moves upwards is lifted, and meets the wall of the upper mode with y = 0.3 + (t - 1).
 #[test]
 fn a_surface_of_several_modes_is_met_in_each() {
     let point = WALLED.model();

@@ -49,7 +49,7 @@ pub struct Dense<'a> {
 /// Quantities of a model at a point.
 pub struct Evaluated {
     pub metric: Vec<Vec<f64>>,
-    /// `A`
+    /// `A`, the momenta at zero velocity.
     pub linear: Vec<f64>,
     pub p: Vec<f64>,
     pub force: Vec<f64>,
@@ -209,7 +209,7 @@ impl Evaluated {
         solve(&self.metric, covector)
     }
 
-    /// The condition number of the saddle matrix in the norm of the largest row sum. It bounds the growth of relative
+    /// The condition number of the saddle matrix in the maximum row-sum norm. It bounds the growth of relative
     /// errors from the entries to a solution.
     pub fn condition(&self) -> f64 {
         let matrix = self.saddle_matrix();

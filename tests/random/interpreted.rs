@@ -321,7 +321,8 @@ fn check_restored(comparison: &Comparison<'_>, p: &[f64]) -> Result<(), TestCase
     comparison.same("restore", &residuals, &vec![0.0; residuals.len()])
 }
 
-/// Checks that the correction of positions is the smallest one in the metric that changes the levels by the excess.
+/// Checks that the correction of positions is the smallest one in the metric that removes the excess of the levels to
+/// first order.
 fn check_levels(comparison: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
     let evaluated = &comparison.evaluated;
     let levelled: Vec<usize> = comparison.compiled.derivation.levelled().collect();

@@ -1,9 +1,9 @@
-//! Every mistake in a declaration: the compiler's message, word for word, and the place it points at.
+//! Checks the message of every mistake in a declaration, word for word, and the place it points at.
 //!
-//! One mistake per file in `ui/TOPIC/`. Every stored message is compared with the one that the generator gives, without
-//! a compiler. The compiler checks the first file of each topic, and nightly all of them, if it is the version in
-//! `ui/RUSTC`, with which the messages were stored. To store them anew, run the ignored test with
-//! `TRYBUILD=overwrite`, read the difference, and write the new version into `ui/RUSTC`.
+//! Each file in `ui/TOPIC/` has one mistake. Every stored message is compared with the one that the generator gives,
+//! without a compiler. The messages were stored with the compiler version in `ui/RUSTC`. That version also compiles the
+//! first file of each topic, and nightly all of them; other versions are not compared. To store the messages anew, run
+//! the ignored test with `TRYBUILD=overwrite`, read the difference, and write the new version into `ui/RUSTC`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::process::Command;
 
 use dalembert_refusals as refusal;
 
-/// Cases that need a compiler, and the reason. Where it adds errors or warnings, those of the generator come first.
+/// Cases that need a compiler, and the reason. The compiler adds errors or warnings after the errors of the generator.
 const COMPILED: [(&str, &str); 1] = [(
     "names/greek_lookalike",
     "`rustc` warns of letters that look alike",
@@ -43,7 +43,7 @@ fn is_compiled(case: &str) -> bool {
     COMPILED.iter().any(|(name, _)| *name == case)
 }
 
-/// The first case of each topic that needs no compiler, and those that do.
+/// The first case of each topic among those that need no compiler, and all cases that need one.
 fn representatives() -> BTreeSet<String> {
     let (compiled, compared): (BTreeSet<String>, BTreeSet<String>) =
         cases().into_iter().partition(|case| is_compiled(case));

@@ -203,7 +203,7 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
         assert!((t - 2.0).abs() < 1e-3 && met == 1, "{run:?}");
     }
     // The point starts beyond the edge of the ledge and falls below the height of the ledge at the time 1.77. The whole
-    // flight is above the ground. The audit finds the reset alone.
+    // flight is above the ground. The audit finds only the reset.
     let beyond = Start {
         q: &[2.0, 0.5],
         v: &[1.0, 0.0],

@@ -6,7 +6,7 @@ use dalembert::{Event, Impacts, Observer, Outcome};
 use dalembert_tests::gap;
 use dalembert_tests::particle::*;
 
-/// The distance of a point of mass 1 at `u` and a block of mass `M` at `v / sqrt(M)`, where `ROOT = sqrt(M)`. The
+/// The distance between a point of mass 1 at `u` and a block of mass `M` at `v / sqrt(M)`, where `ROOT = sqrt(M)`. The
 /// metric is the identity in `u` and `v`.
 fn block<const ROOT: u64>() -> Gap {
     Gap {

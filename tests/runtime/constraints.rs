@@ -12,7 +12,7 @@ type One = SVector<f64, 1>;
 type Vector = SVector<f64, 2>;
 type State = SVector<f64, 4>;
 
-/// A point of mass 1 on the circle `x dx + y dy = 0`.
+/// A point of mass 1 on a circle, with the constraint `x dx + y dy = 0`.
 struct Circle {
     /// Fraction of the radial velocity that `restore` leaves.
     left: f64,
@@ -184,7 +184,7 @@ fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
 
 #[test]
 fn a_residual_of_vanishing_terms_is_no_failure() {
-    // At the lowest point the residual is `y ydot` alone, and `restore` leaves its rounding error.
+    // At the lowest point the residual consists only of `y ydot`, and `restore` leaves its rounding error.
     let rounding = f64::EPSILON;
     for velocity in [[-1.0, 1e-11], [1e-9, 1e-5], [0.0, 1e-30], [0.0, 1e-300]] {
         let state = State::new(0.0, -1.0, velocity[0], velocity[1]);

@@ -308,7 +308,7 @@ fn angles_on_the_axes_have_all_digits() {
         let apart = (angle - eighth * X::from(eighths)).nearest().abs();
         assert!(apart <= 8.0 * X::ROUNDING, "{y} {x}: {angle}");
     }
-    // The sine of the rounded circle constant is the rounding error of the constant.
+    // The sine of the rounded value of pi is its rounding error.
     assert!(Numbers::sin(pi).nearest().abs() < 4.0 * X::ROUNDING);
     assert_eq!(Numbers::cos(pi), -one);
 }

@@ -55,7 +55,7 @@ fn assert_orders<Step: Stepper<Line>>(
     }
 }
 
-/// An embedded pair with so loose a tolerance that the step limit alone sets the step.
+/// An embedded pair with so loose a tolerance that only the step limit sets the step.
 fn limited<M: dalembert::integrate::Scheme>(h: f64) -> Embedded<Plane, M> {
     Embedded::new(Tolerance::new(1e3).unwrap())
         .with_max_step(h)

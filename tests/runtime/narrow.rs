@@ -150,7 +150,7 @@ fn a_steep_wall_turns_the_motion_back() {
 
 #[test]
 fn smooth_forces_cost_no_steps() {
-    // The blow is longer than every step. Its rates are checked, and no step is rejected.
+    // The blow is longer than every step. The rates along steps are checked, and no step is rejected.
     let spring = SPRING.with([("s", 2.0)]);
     assert!(spring.has_narrow_rates());
     for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor] {
@@ -253,7 +253,8 @@ fn a_denominator_that_changes_little_costs_no_check() {
     }
 }
 
-/// Asserts that every adaptive integrator gets this impulse in half a turn of the pointer, with the bump in the middle.
+/// Asserts that half a turn of the pointer, with the bump in the middle, gives this impulse by every adaptive
+/// integrator.
 fn assert_gains(text: &Text, blow: f64) {
     let model = text.model();
     assert!(model.has_narrow_rates());

@@ -1,6 +1,6 @@
 //! No impact is stepped over and none is invented. First impacts of random starts are compared with conservative
-//! advancement, which moves along the exact flight by the gap divided by a bound on its rate and so never passes a
-//! surface.
+//! advancement along the exact flight: its steps in time are the gap divided by a bound on the gap rate, so that it
+//! never passes a surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::f64::consts::TAU;

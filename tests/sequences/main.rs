@@ -24,7 +24,7 @@ const LOST: f64 = 1e-4;
 /// The reference of a start.
 struct Reference {
     course: Course,
-    /// Impacts that both runs agree on.
+    /// Number of first impacts on which both runs agree.
     sure: usize,
 }
 
@@ -161,8 +161,8 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     }
 }
 
-/// True if the error of a run reaches [`LOST`] just before the time `t`. The run lasts until `until`, its reference
-/// until `reference_until`.
+/// True if the error of a run exceeds [`LOST`] just before the time `t`, or if a state is missing there. The run lasts
+/// until `until`, its reference until `reference_until`.
 fn is_lost(case: &Case, way: Way, [until, reference_until]: [f64; 2], t: f64) -> bool {
     let before = t - 1e-9 * case.until;
     let states = state_at(case, way, until, before).and_then(|(t, ours)| {

@@ -72,7 +72,8 @@ pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
     })
 }
 
-/// A time and the state of a run at it: the time `t`, or the end of the run if it comes first.
+/// The state of a run at the time `t`, or at its end if the run ends earlier; preceded by that time. `None` if the
+/// start is refused.
 pub fn state_at(case: &Case, way: Way, until: f64, t: f64) -> Option<(f64, Point)> {
     let mut moment = Moment { t, point: None };
     let ending = watched(case, way, until, &mut moment)?;
@@ -116,7 +117,8 @@ pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> 
     Some((strikes, certified))
 }
 
-/// The error of an impact compared with the reference: the larger of the relative errors of its time and state.
+/// The error of an impact compared with the reference: the largest of the error of its time, relative to `until`, and
+/// of the errors of the positions and velocities after it, by [`apart`].
 pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
     let time = (impact.t - reference.t).abs() / until;
     let after = (&impact.after, &reference.after);
@@ -124,7 +126,8 @@ pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
         .max(apart(&after.0.qdot, &after.1.qdot))
 }
 
-/// The largest difference of two vectors relative to their size. Coordinates that the mode does not have are left out.
+/// The largest difference of the entries, relative to the largest entry of `a`, or to 1e-3 if that is larger.
+/// Coordinates that the mode does not have are left out.
 pub fn apart(a: &[f64], b: &[f64]) -> f64 {
     let pairs = || a.iter().zip(b).filter(|(a, b)| !(a.is_nan() && b.is_nan()));
     let largest = pairs().fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));

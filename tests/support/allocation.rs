@@ -1,7 +1,7 @@
 //! Counts the allocations of the current thread and the bytes that it holds. A test can thus assert that code does not
 //! allocate.
 
-#![allow(unsafe_code, reason = "a global allocator cannot be written without")]
+#![allow(unsafe_code, reason = "a global allocator is unsafe code")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

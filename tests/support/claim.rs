@@ -66,7 +66,7 @@ impl Declaration {
     }
 }
 
-/// The entries of a section, as text.
+/// The entries of a section as text. Each ends with a semicolon, which is left out.
 fn entries_of(tokens: TokenStream) -> Vec<String> {
     let mut entries = vec![TokenStream::new()];
     for token in tokens {
@@ -156,7 +156,7 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// Reads a message; `None` if it shows no numbers.
+    /// Reads the values of a message, and the state; `None` if it shows no values.
     ///
     /// # Panics
     /// If a number cannot be read.

@@ -8,7 +8,7 @@ use core::f64::consts::TAU;
 
 use dalembert_stability::course::Random;
 
-/// A start in the plane.
+/// A flight in the plane: its start and its gravity.
 #[derive(Debug, Clone, Copy)]
 pub struct Flight {
     /// Position at time 0.
@@ -97,7 +97,7 @@ pub fn first_impact(
             };
         }
     }
-    // The flight stays close to a surface: only there are the steps so short.
+    // The flight stays close to a surface, because steps are so short only there.
     Exact::Grazes
 }
 
@@ -112,7 +112,7 @@ pub fn direction(random: &mut Random, speed: f64) -> [f64; 2] {
     [speed * angle.cos(), speed * angle.sin()]
 }
 
-/// A point of a square with sides of twice this length about the origin.
+/// A point of the square about the origin with sides of the length `2*size`.
 pub fn point(random: &mut Random, size: f64) -> [f64; 2] {
     [(); 2].map(|()| random.between(-size, size))
 }

@@ -32,7 +32,7 @@ impl<S: Described> Flow<'_, S> {
     }
 
     /// The rates of `(q, v_ind)`. The accelerations are derivatives, along the emitted vector field, of the velocities
-    /// that the emitted momenta give.
+    /// that emitted code computes from the state.
     ///
     /// # Panics
     /// At singular states.

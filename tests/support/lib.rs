@@ -1,5 +1,5 @@
-//! Items that the tests share: reference values, the command line inside the process, systems that only tests declare,
-//! an allocation counter.
+//! Items that the tests share, such as reference values, the command line inside the process, systems that only tests
+//! declare, independent computations by finite differences, and an allocation counter.
 
 /// Makes every Rust block of the language reference a doctest.
 #[doc = include_str!("../../docs/language.md")]

@@ -1,4 +1,5 @@
-//! Emitted models as functions of slices, so that one test can use any of them. Nothing here uses the generator.
+//! Models, emitted or loaded, as functions of slices, so that one test can use any of them. Nothing here uses the
+//! generator.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +50,7 @@ impl Reported {
     }
 }
 
-/// An emitted model behind one type. States are those of its global form: positions and momenta.
+/// A model, emitted or loaded, behind one type. States are those of its global form: positions and momenta.
 ///
 /// # Panics
 /// All functions panic where the model has no value.

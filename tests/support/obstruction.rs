@@ -1,5 +1,6 @@
-//! Brackets of the frame of D. Each has a demand: the derivative along it that an invariant density requires of its
-//! logarithm `G`. A model reports its metric and forms; every derivative is a central difference in double precision.
+//! Brackets of the frame of D, with their demands. The demand of a field is the derivative along it that an invariant
+//! density requires of its logarithm `G`. A model reports its metric and forms; every derivative is a central
+//! difference in double precision.
 //!
 //! ```text
 //! X_i = e_i - A_dep^{-1} A e_i          theta_k = m_ab (W^{a,j} d_j eta_bk + eta_bj d_k W^{a,j})

@@ -1,6 +1,6 @@
-//! Verdicts with independent checks by finite differences. The demand of a field, which is the derivative of `G` along
-//! it that a density requires, is compared with the mean curvature and with the divergence of the motion. Densities are
-//! compared with that divergence, obstructions with brackets.
+//! Verdicts with independent checks by finite differences. The demand of a field is the derivative along it that a
+//! density requires of its logarithm `G`. Demands are compared with the mean curvature and with the divergence of the
+//! motion, densities with this divergence, and obstructions with brackets.
 
 use dalembert_codegen::claims::find_obstruction;
 use dalembert_codegen::model::Coordinate;
@@ -9,7 +9,7 @@ use crate::curvature::Curved;
 use crate::divergence::{Flow, State};
 use crate::verdict::{Decided, Existence};
 
-/// A state with coordinates inside every chart.
+/// A state with coordinates between 0.37 and 1.2, inside the charts of the models of these tests.
 fn state(n: usize, independent: usize, attempt: usize) -> State {
     let number = |i: usize| 0.37 + ((5 * i + 3 * attempt) % 11) as f64 * 0.083;
     State {
@@ -47,7 +47,7 @@ pub fn verified(source: &str) -> Existence {
     decided.existence()
 }
 
-/// Compares demands and obstruction with differences.
+/// Compares demands and obstruction with finite differences.
 fn check_curvature(decided: &Decided, source: &str) {
     let (model, parameters) = (&decided.model, decided.defaults());
     let n = model.coordinates.len();

@@ -35,9 +35,9 @@ pub struct Scheme {
     pub definitions: String,
     /// The Lagrangian.
     pub lagrangian: String,
-    /// The coefficients of each constraint by the coordinates in `columns`.
+    /// The coefficients of each constraint for the differentials of the functions in `columns`.
     pub forms: Vec<Vec<String>>,
-    /// Functions whose differentials are the columns of the forms.
+    /// Functions whose differentials the constraints combine; the coordinates, unless these were transformed.
     pub columns: Vec<String>,
 }
 

@@ -10,7 +10,7 @@ use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::math;
 
-/// Number of returns before the growth of a deviation counts. They turn it to the direction of fastest growth.
+/// Number of first images whose growth is not counted. They turn the deviation to the direction of fastest growth.
 const TURNING: u32 = 8;
 
 impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
@@ -19,12 +19,13 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The mean logarithm of the growth of a small deviation per image of the section, over `images` images from the
-    /// first arrival after a state. It tends to the largest Lyapunov exponent. For a periodic orbit, this is the
-    /// logarithm of the largest modulus of its multipliers. It is minus infinity where deviations vanish.
+    /// The mean logarithm of the factor by which one application of the map lengthens a small deviation. The run begins
+    /// at `state`. After its first arrival, 8 images turn the deviation to the direction of fastest growth; the mean is
+    /// over the next `images` images, at least 1. It tends to the largest Lyapunov exponent. For a periodic orbit, this
+    /// is the logarithm of the largest modulus of its multipliers. It is minus infinity if the deviation vanishes.
     ///
     /// # Errors
-    /// [`OrbitError::Section`] where the section is not met again or the motion to it has no derivative,
+    /// [`OrbitError::Section`] where the section is not met or the motion to it has no derivative,
     /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NoMultipliers`]
     /// if the growth is not finite.
     pub fn exponent(&mut self, state: &Sys::State, images: u32) -> Result<f64, OrbitError> {
@@ -52,7 +53,7 @@ where
         Ok(sum / f64::from(images.max(1)))
     }
 
-    /// Moves a point to its image. Returns the growth of a deviation, and the image of the deviation.
+    /// Moves a point to its image. Scales a deviation to length 1, and returns the length of its image and the image.
     fn grown(
         &mut self,
         chart: &Chart<Sys>,

@@ -7,10 +7,12 @@
 //! f_b + s (f_a - f_b),  s = r_b/(r_a + r_b)            sliding between modes a and b
 //! ```
 //!
-//! The gap rates `r` and the second rate `h''` along `f` follow from coefficients 1 and 2 of the gaps' series.
+//! Here `r_a` is the gap rate, along `f_a`, of the transition from mode a to mode b, and `r_b` the reverse. Gap rates
+//! and the second rate `h''` along `f` follow from coefficients 1 and 2 of the gaps' series.
 //!
-//! Where held motion begins, variations jump as at any transition, with the held field as `f+`: neighbouring motions
-//! begin on the surface as well. Where the contact force vanishes, the field is continuous and variations do not jump.
+//! Where held motion begins, variations jump as at any transition, with the held field as `f+`, because neighbouring
+//! motions are held from the surface on as well. Where the contact force vanishes, the field is continuous and
+//! variations do not jump.
 
 use super::flow::{Flow, dual_parameters, dual_state};
 use super::{Dual, Undefined};
@@ -19,7 +21,7 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Hold;
 use crate::state::StateVector;
 
-/// Allowed jump of the field at the end of held motion, relative to its largest component.
+/// Allowed jump of the field at the end of held motion, relative to the largest component of the field.
 const JUMP: f64 = 1e-5;
 
 /// Cause of held motion.
@@ -75,7 +77,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The rate of a state without variations: that of held motion if there is a holder.
+    /// The rate of a state without variations. With a holder, it is the rate of held motion.
     pub(super) fn rate_of(
         &mut self,
         system: &Sys,
@@ -94,7 +96,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(values::<Sys>(&row))
     }
 
-    /// The rate of a state, and coefficient `k` of the gap of a surface along its free motion.
+    /// The rate of a state in free motion, and coefficient `k` of the series of a surface's gap along it.
     fn free(
         &mut self,
         system: &Sys,
@@ -166,8 +168,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// Refuses an end of held motion at which the field jumps: it ends for another reason than a vanishing contact
-    /// force.
+    /// Refuses an end of held motion at which the field jumps. The contact force does not vanish there, so the motion
+    /// is released for another reason.
     pub(super) fn check_release(
         &mut self,
         system: &Sys,

@@ -1,16 +1,17 @@
 //! First variations: derivatives of a run with respect to its initial state and its parameters.
 //!
 //! Between transitions the power series of the motion are recomputed over [`Dual`] numbers (forward-mode derivatives).
-//! Their dual parts are the derivatives of the motion, exact to rounding, whichever integrator made the run. At a
-//! transition on a surface `h(t, z; k) = 0`, with the rates `f-` before and `f+` after it, and the map
-//! `z+ = D(t, z; k)`, the differential
+//! Their dual parts are the derivatives of the motion, exact to rounding, whichever integrator made the run. A
+//! transition on a surface `h(t, z; k) = 0`, with parameters `k`, has the rates `f-` before and `f+` after it, and the
+//! map `z+ = D(t, z; k)`. The differentials of its time `T` and, at a fixed time, of the state after it are
 //!
 //! ```text
 //! dT  = -(h_z . dz- + h_k dk) / (h_z . f- + h_t)
 //! dz+ = D_z (dz- + f- dT) + D_t dT + D_k dk - f+ dT
 //! ```
 //!
-//! follows from the saltation matrix. [`Variations`] is an observer that propagates these derivatives along a run.
+//! These formulas apply the saltation matrix. [`Variations`] is an observer that propagates these derivatives along a
+//! run.
 //!
 //! [`Section`] is the Poincare map of a surface: the map from an arrival at it to a later one, with its derivative.
 //! [`Section::periodic`] finds its fixed points, which are periodic orbits, and their Floquet multipliers.
@@ -51,7 +52,7 @@ pub use section::{Arrival, Itinerary, Section, SectionError};
 
 use crate::error::Fault;
 
-/// Reason why a run has no derivative, or no digits beyond those of doubles, with time and surface.
+/// Reason why a run has no derivative, or no digits beyond those of doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Undefined {
@@ -79,8 +80,8 @@ pub enum Undefined {
         /// The surface.
         surface: usize,
     },
-    /// The state after an impact is not the result of the law in force alone, for example because an impact policy
-    /// repeats the law.
+    /// The state after an impact is not the result of one application of the law in force, for example because an
+    /// impact policy repeats the law.
     Unlawful {
         /// Time.
         t: f64,
@@ -136,7 +137,7 @@ impl fmt::Display for Undefined {
             ),
             Self::Unlawful { t, surface } => write!(
                 f,
-                "the impact on surface {surface} at t = {t} is not that of its law alone"
+                "the state after the impact on surface {surface} at t = {t} is not the result of its law alone"
             ),
             Self::Refracted { t, surface } => write!(
                 f,

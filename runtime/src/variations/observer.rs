@@ -29,7 +29,7 @@ use crate::record::{Event, Hold, Observer, Segment};
 ///     }
 /// }
 ///
-/// // Columns: derivatives of the end with respect to each component of the start.
+/// // There is a direction for each component of the initial state.
 /// let ball = Ball::default();
 /// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
 /// let mut directions = Ball::tangents();
@@ -132,7 +132,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         match (held, hold.begins) {
             (None, true) if hold.accumulation.is_some() => Err(holder.undefined(t)),
             (None, true) if crosses => Ok(()),
-            // At the start of a run.
+            // The surface holds the motion from the start of the run.
             (None, true) if self.end.is_none() => {
                 holder.check_along(system, t, &hold.state, self.tangents)
             }

@@ -14,16 +14,16 @@ use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::state::StateVector;
 
-/// Default maximum of Newton steps.
+/// Default maximum number of Newton steps.
 pub const ITERATIONS: u32 = 50;
 
 /// Maximum number of halvings of one step.
 const HALVINGS: u32 = 12;
 
-/// Residual that counts as 0, relative to the size of the state times the amplification of the orbit.
+/// Residual that counts as 0, relative to the size of the state times the amplification of the orbit, or to 1 if that
+/// is larger.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Residual that counts as 0, relative to the same product, in units of the integrator's tolerance. The larger of both
-/// bounds applies.
+/// The same bound in units of the integrator's tolerance. The larger of the two bounds applies.
 const STEPS: f64 = 16.0;
 
 /// A closed point is final if its residual exceeds this multiple of the residual before it.
@@ -40,14 +40,15 @@ pub struct Orbit<Sys: Variational> {
     pub residual: f64,
     /// Number of Newton steps.
     pub iterations: u32,
-    /// Number of directions of the section within the constraints: N + N - M - 1, if the state is `(q, u)`.
+    /// Number of directions of the section within the constraints, without those of the group. For a state `(q, u)` of
+    /// N coordinates and N - M quasi-velocities, without a group, it is 2 N - M - 1.
     pub dimension: usize,
     /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
     pub directions: Sys::Columns,
     /// The leading square of size `dimension` is the derivative of the Poincare map in these directions: the
     /// monodromy matrix, without the direction of the motion.
     pub derivative: Sys::Columns,
-    /// Eigenvalues of that derivative: the Floquet multipliers of the orbit, without the multiplier 1 along the motion.
+    /// Eigenvalues of `derivative`: the Floquet multipliers of the orbit, without the multiplier 1 along the motion.
     /// Every conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. For an orbit
     /// modulo a group, the directions of the group are left out.
     pub multipliers: Multipliers<Sys::State>,
@@ -172,8 +173,9 @@ where
         }
     }
 
-    /// True if a point is its own image, up to rounding and relative to the length of the orbit. A motion that comes to
-    /// rest returns to its point without being an orbit.
+    /// True if a point is its own image up to errors of rounding and of the integrator, and the residual is small
+    /// relative to the length of the orbit. The second condition excludes a motion that comes to rest: it returns to
+    /// its point, but is no orbit.
     pub(super) fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
@@ -183,7 +185,7 @@ where
         Ok(trial.residual <= f64::min(least, CLOSED * way))
     }
 
-    /// A better point along the Newton step, if one exists.
+    /// A better point along the Newton step, if one is found.
     fn improve(
         &mut self,
         fixed: &Fixed<Sys>,
@@ -208,7 +210,8 @@ where
         }
     }
 
-    /// Maps the point of the section near a given point, with its directions and with a parameter.
+    /// Moves a point onto the section and maps it. Computes the derivatives of the image along the directions of the
+    /// section and, if given, by a parameter.
     pub(super) fn attempt(
         &mut self,
         fixed: &Fixed<Sys>,
@@ -298,8 +301,9 @@ fn finish<Sys: Variational>(
 
 /// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss (Levenberg-Marquardt).
 ///
-/// Along a family of orbits, `derivative - 1` is as small as the miss, but not 0: undamped steps would wander along the
-/// family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74 (2005)).
+/// Near a family of orbits, `derivative - 1` along the family is as small as the miss, but not 0: undamped steps would
+/// wander along the family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74
+/// (2005)).
 fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, columns(system));
@@ -316,15 +320,15 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     step
 }
 
-/// True if a point is closer to its image than another point, in the largest component or in length. A short Newton
-/// step always lowers the length.
+/// True if `better` is closer to its image than `trial`, in the largest component or in length. A sufficiently short
+/// Newton step always lowers the length.
 fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
     let [length, before] = [better, trial].map(|trial| dot(&trial.miss, &trial.miss));
     better.residual < trial.residual || length < before
 }
 
-/// Upper bound of the ratio between the lengths of the image of a direction and of the direction (Frobenius norm); at
-/// least 1.
+/// The Frobenius norm of the derivative, at least 1: an upper bound on the factor by which the map lengthens a
+/// direction.
 fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
     let columns = trial.derivative.as_ref()[..trial.chart.dimension()].iter();
     let squares = columns.map(|column| dot(column, column)).sum::<f64>();

@@ -52,7 +52,7 @@ pub struct Section<'a, Sys: Variational, Step, Effects> {
     horizon: f64,
     /// The group of symmetries, if orbits need to close only up to one of its elements.
     pub(super) group: Option<&'a dyn Group>,
-    /// Relative error of one step.
+    /// Relative tolerance of the integrator.
     pub(super) tolerance: f64,
 }
 
@@ -81,7 +81,7 @@ impl<S: Copy> Arrival<S> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum SectionError {
-    /// The run was not begun.
+    /// The run cannot begin.
     Start(StartError),
     /// The run ended before the section; [`Outcome::Done`] means that the allowed time was over.
     Ended(Outcome),
@@ -118,8 +118,8 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The section at the surface with index `surface`. Runs use `stepper` and `effects`. A return may take at most the
-    /// time `horizon`.
+    /// The section at the surface with index `surface`. Runs use `stepper` and `effects`. One application of the map,
+    /// or the way to a first arrival, may take at most the time `horizon`.
     pub fn new(
         system: &'a Sys,
         stepper: Step,
@@ -157,7 +157,7 @@ where
     /// derivatives of the point of arrival.
     ///
     /// # Errors
-    /// [`SectionError`] where the run is not begun, ends before the section, or has no derivative.
+    /// [`SectionError`] where the run cannot begin, ends before the section, or has no derivative.
     pub fn arrive(
         &mut self,
         state: &Sys::State,
@@ -174,7 +174,7 @@ where
     /// the image of a fixed starting point.
     ///
     /// # Errors
-    /// [`SectionError`] where the run is not begun, ends before the section, or has no derivative.
+    /// [`SectionError`] where the run cannot begin, ends before the section, or has no derivative.
     pub fn next(
         &mut self,
         point: &Sys::State,
@@ -222,9 +222,9 @@ where
 
 /// A run from one arrival to another.
 pub(super) struct Passed<Sys: Variational> {
-    /// Time of the first arrival at the surface; 0 for a run without one before the last.
+    /// Time of the first arrival at the surface; 0 if the first arrival is the last one.
     pub(super) delay: f64,
-    /// Duration since the first arrival, or since the start if there is none.
+    /// Duration from `delay` to the last arrival.
     pub(super) time: f64,
     /// The last arrival.
     pub(super) event: Event<Sys::State>,

@@ -10,7 +10,7 @@ use crate::state::StateVector;
 #[derive(Clone, Copy)]
 pub(super) struct Slice<S> {
     functions: [S; GENERATORS],
-    /// For each function, the combination of the group's directions on which it is 1 and the others are 0.
+    /// For each function, a combination of the group's directions on which this function is 1 and the others are 0.
     back: [S; GENERATORS],
     count: usize,
 }
@@ -34,10 +34,12 @@ impl<S: StateVector> Slice<S> {
     }
 
     /// Adds a function for each independent direction of the group. The first `kept` rows of the frame are an
-    /// orthonormal basis of the gradients of the section's equations. Returns the number of excluded directions.
+    /// orthonormal basis of the gradients of the section's equations. Returns the number of rows that are excluded from
+    /// the directions of the section: `kept`, and the directions of the group that are appended.
     ///
-    /// A direction along which an equation changes leads to other levels of a constraint: the level itself is the
-    /// function, and the section does not change. Any other direction lies along the section and is excluded from it.
+    /// A direction along which an equation of the section changes leads to other levels of a constraint. Its function
+    /// is the change of the level, and the section keeps all its directions. Any other direction of the group lies
+    /// along the section and is excluded from it.
     pub(super) fn cut(&mut self, frame: &mut [S], kept: usize, rates: [S; GENERATORS]) -> usize {
         let (mut left_out, mut leaving) = (kept, self.back);
         for rate in rates {

@@ -12,7 +12,8 @@ use crate::record::Event;
 use crate::state::StateVector;
 
 /// Allowed difference between the state after a transition and the result of its law, relative to the largest
-/// component before and after. Corrections of rounding errors are far smaller; any other cause is far larger.
+/// component before and after. Differences from corrections of rounding errors are far smaller; differences from any
+/// other cause are far larger.
 const LAWFUL: f64 = 1e-6;
 
 /// Maximum number of transitions at one moment. A longer sequence means that two modes pass the motion back and forth.
@@ -155,7 +156,7 @@ fn passing(t: f64) -> Dual {
 /// Rates at an arrival by free motion.
 ///
 /// # Errors
-/// If the arrival has no derivative: a grazing impact or a corner.
+/// [`Undefined`] for a grazing impact, a corner, or a fault of the rates.
 pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -297,7 +298,7 @@ impl Strike {
         if focused.is_some() {
             match collision.as_slice()[0].is_below_zero() {
                 Some(true) => {}
-                // The impulse of the instantaneous constraints alone has reversed the approach.
+                // The impulse of the instantaneous constraints has already reversed the approach.
                 Some(false) => return Ok(Some(after)),
                 None => return Ok(None),
             }
