@@ -1,8 +1,8 @@
 //! Conditions on parameters under which a density exists, for models that have none for generic values.
 
 use dalembert_codegen::claims::{Condition, find_conditions};
+use dalembert_declarations::visible::{Scheme, declaration, visible_system};
 use dalembert_tests::verdict::{Decided, Existence};
-use dalembert_tests::visible::{Scheme, declaration, visible_system};
 
 /// The conditions of a model, as text.
 fn conditions(source: &str) -> Vec<String> {

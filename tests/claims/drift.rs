@@ -1,6 +1,6 @@
 //! Densities of models with forces that depend on velocities, affine constraints, or dependence on time.
 
-use dalembert_tests::bodies::{BODY, EULER};
+use dalembert_declarations::bodies::{BODY, EULER};
 use dalembert_tests::verdict::{Decided, Existence};
 use dalembert_tests::verified::verified;
 

@@ -3,12 +3,12 @@
 
 use dalembert_codegen::claims::exactness::decide_local_in;
 use dalembert_codegen::claims::{Obstruction, Potential, Term, geometry_at};
+use dalembert_declarations::visible::{declaration, visible_systems};
 use dalembert_expr::{ExprId, Function, Pool, Rational, Verdict};
 use dalembert_tests::curvature::Curved;
 use dalembert_tests::reference::{number, numbers};
 use dalembert_tests::symbolic::Geometry;
 use dalembert_tests::verdict::{Decided, Existence};
-use dalembert_tests::visible::{declaration, visible_systems};
 use serde_json::Value;
 
 /// Every system of the file with its declaration, decided.

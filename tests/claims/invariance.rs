@@ -2,9 +2,9 @@
 //! seed of the random points.
 
 use dalembert_codegen::claims::{Geometry, geometry_at};
+use dalembert_declarations::visible::{Scheme, declaration, visible_system, visible_systems};
 use dalembert_expr::SymbolId;
 use dalembert_tests::verdict::{Decided, Existence};
-use dalembert_tests::visible::{Scheme, declaration, visible_system, visible_systems};
 
 /// Every system of `reference/verdicts_visible.json`, unchanged, with its verdict.
 fn systems() -> Vec<(Scheme, Decided)> {

@@ -8,9 +8,9 @@ use dalembert_codegen::claims::{
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
 use dalembert_codegen::spec;
+use dalembert_declarations::visible::declaration;
 use dalembert_expr::{RealPoint, SymbolId};
 use dalembert_tests::reference::read;
-use dalembert_tests::visible::declaration;
 use serde_json::Value;
 
 /// Reads `|l|^(s) * det(m)^(k)` as `(l, s, k)`.

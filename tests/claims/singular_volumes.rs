@@ -4,12 +4,12 @@
 use dalembert::Described;
 use dalembert::math::larger;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};
+use dalembert_declarations::visible::declaration;
 use dalembert_expr::SymbolId;
 use dalembert_models::ChaplyginSleigh;
 use dalembert_tests::flow::Flow;
 use dalembert_tests::reference::read;
 use dalembert_tests::sampling::Random;
-use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, divergence};
 
 /// A system without a density of the configuration, with its density that depends on velocities.

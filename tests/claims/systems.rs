@@ -1,6 +1,6 @@
 //! Systems beyond those of the reference file: bodies, balls, trains, particles.
 
-use dalembert_tests::bodies::{ball, top, train};
+use dalembert_declarations::bodies::{ball, top, train};
 use dalembert_tests::divergence::{Flow, State};
 use dalembert_tests::numeric::{moved, slope};
 use dalembert_tests::verdict::{Decided, Existence};

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use dalembert_codegen::claims::Global;
+use dalembert_declarations::visible::{declaration, visible_system};
 use dalembert_tests::divergence::{Flow, State};
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer};
 use dalembert_tests::verified::verified;
-use dalembert_tests::visible::{declaration, visible_system};
 
 /// A system of `reference/verdicts_visible.json`, with some of its angles replaced by coordinates on a line.
 fn unwrapped(name: &str, angles: &[&str]) -> String {

@@ -6,12 +6,12 @@ use dalembert::{Described, Instance};
 use dalembert_codegen::claims::{Potential, Term, Volume};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Guard, interpret::interpret, verify::verify};
+use dalembert_declarations::visible::declaration;
 use dalembert_expr::Rational;
 use dalembert_tests::linear::determinant;
 use dalembert_tests::reference::read;
 use dalembert_tests::sampling::{Random, every_system};
 use dalembert_tests::systems::MixedDisk;
-use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, difference};
 use serde_json::Value;
 

@@ -7,7 +7,6 @@
 struct LanguageReference;
 
 pub mod allocation;
-pub mod bodies;
 pub mod certified;
 pub mod claim;
 pub mod command;
@@ -30,7 +29,6 @@ pub mod symbolic;
 pub mod systems;
 pub mod verdict;
 pub mod verified;
-pub mod visible;
 pub mod visible_models;
 pub mod volume;
 pub mod witness;

@@ -21,7 +21,7 @@ use dalembert::{
 };
 use nalgebra::SVector;
 
-use particle::{Particle, free, particle};
+use particle::{Particle, field, free, particle, system};
 pub use unsure::Unsure;
 
 /// Quantities that every model reports.
