@@ -10,6 +10,7 @@ mod check;
 mod curves;
 mod derive;
 mod ensemble;
+mod errata;
 mod eval;
 mod files;
 mod folder;

@@ -5,9 +5,6 @@ mod describe;
 mod types;
 mod whole;
 
-#[cfg(test)]
-mod tests;
-
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 

@@ -193,17 +193,4 @@ mod tests {
             assert_eq!(is_shown(&computed), shown, "{computed:?}");
         }
     }
-
-    #[test]
-    fn a_command_that_fails_is_reported() {
-        let check = Check {
-            quantity: "x",
-            command: "eval nothing",
-            input: "[]",
-            how: "",
-            values: |_| Some([0.0, 1.0]),
-        };
-        let failure = compute(&Catalogue::of(Vec::new()), &check).expect_err("no such model");
-        assert!(failure.contains("unknown model `nothing`"), "{failure}");
-    }
 }

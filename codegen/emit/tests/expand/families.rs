@@ -1,7 +1,8 @@
-//! Tests of families of modes and transitions against their members written out.
+//! Families of modes and transitions against their members written out.
 
 use dalembert_codegen::compile_modes;
 use dalembert_codegen::spec::{Declaration, Modes};
+use dalembert_emit::modes;
 
 fn read(source: &str) -> Modes {
     match dalembert_codegen::read(source.parse().unwrap()).unwrap() {
@@ -16,7 +17,7 @@ fn emitted(source: &str) -> String {
     for mode in &mut declared.modes {
         mode.spec.source.clear();
     }
-    super::tokens(&compile_modes(&declared).unwrap()).to_string()
+    modes::tokens(&compile_modes(&declared).unwrap()).to_string()
 }
 
 /// A hopper on three legs, with the given modes and transitions.

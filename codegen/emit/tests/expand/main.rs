@@ -1,0 +1,8 @@
+//! Items that declarations expand to.
+
+// A test fails by panicking.
+#![allow(clippy::unwrap_used)]
+
+mod families;
+mod files;
+mod indices;
