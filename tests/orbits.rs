@@ -240,6 +240,36 @@ fn what_is_no_orbit_is_said() {
     assert_eq!(moving, OrbitError::DependsOnTime);
 }
 
+/// Time in a condition, in a reset on the way, in the rates of one mode, in a force that vanishes at all events.
+static DRIVEN: [Text; 4] = [
+    Text::new("Early { coordinates { x; y; } field { dot(x) = -1; dot(y) = -y; }
+        impacts { end: x >= 0 when t <= 1.5 => reset { x = 1; }; } initial { x = 1; y = 0.1; until = 5; } }"),
+    Text::new("OnTheWay { coordinates { x; y; } field { dot(x) = -1; dot(y) = -y; }
+        impacts { end: x >= 0 => reset { x = 1; y = y + 0.1; }; mid: x >= 1/2 => reset { y = y*(1 + t/10); }; }
+        initial { x = 1; y = 0.1; until = 5; } }"),
+    Text::new("OneMode { coordinates { x; y; }
+        modes { early { field { dot(x) = 1; dot(y) = -y + sin(3*t); } initial { x = 0; y = 0.1; until = 9; } }
+            late { field { dot(x) = 1; dot(y) = -y; } } }
+        transitions { back: late -> early when x >= 1 => reset { x = 0; }; end: early -> late when x >= 1 => reset { x = 0; }; } }"),
+    Text::new("Between { coordinates { x; y; } field { dot(x) = -1; dot(y) = -y + x^2*(1 - x)^2*sin(t); }
+        impacts { end: x >= 0 => reset { x = 1; }; } initial { x = 1; y = 0.1; until = 5; } }"),
+];
+
+#[test]
+fn a_system_with_time_anywhere_has_no_orbit() {
+    for (index, text) in DRIVEN.iter().enumerate() {
+        let model = text.model();
+        // The state of the model with modes ends with the number of its mode.
+        let start: &[f64] = if index == 2 {
+            &[0.0, 0.1, 0.0]
+        } else {
+            &[1.0, 0.1]
+        };
+        let found = orbit(&model, &vector(start), 0, 1);
+        assert_eq!(found.err(), Some(OrbitError::DependsOnTime), "{index}");
+    }
+}
+
 /// A command line over the models of this file.
 fn run(line: &str) -> Finished {
     let mut models = dalembert_command::all();

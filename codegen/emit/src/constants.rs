@@ -203,8 +203,8 @@ records! {
     }
     jet::Work { values, sums, degree }
     kernels::Tables {
-        form, dimensions, parameters, charts, conserves_energy, can_be_narrow, can_lose_rank, drifts, is_linear, varies,
-        levels, surfaces, density_reference, modes,
+        form, dimensions, parameters, charts, conserves_energy, can_be_narrow, can_lose_rank, depends_on_time, drifts,
+        is_linear, varies, levels, surfaces, density_reference, modes,
     }
 }
 

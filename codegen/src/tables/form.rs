@@ -26,6 +26,7 @@ impl FormOf<'_> {
             conserves_energy: self.conserves_energy(),
             can_be_narrow: program.can_be_narrow,
             can_lose_rank: constrained.is_some_and(|constraints| constraints.can_lose_rank),
+            depends_on_time: self.depends_on_time(),
             drifts: self.drifts(),
             is_linear: !model.is_nonlinear(),
             varies: self.varies(),
@@ -96,6 +97,16 @@ impl FormOf<'_> {
         let is_constrained = self.program.constrained.is_some();
         let drifts = is_constrained && (self.program.form == Form::Global || self.levels() > 0);
         drifts && self.model.extras.projection
+    }
+
+    /// True if time occurs in a function that determines the motion.
+    fn depends_on_time(&self) -> bool {
+        let reads_time = |function: &Function| {
+            let mut ops = function.ops.iter();
+            ops.any(|op| matches!(op, Op::Input(Input::Time)))
+        };
+        let mut kernels = self.program.kernels().into_iter();
+        kernels.any(|(kernel, function)| is_of_motion(kernel) && reads_time(function))
     }
 
     /// True if runs of the form have variations (derivatives of the motion).
@@ -183,6 +194,23 @@ fn is_of_impulses(kernel: Kernel) -> bool {
     matches!(
         kernel,
         Kernel::Blow(_) | Kernel::Contact(_) | Kernel::ReactionForce | Kernel::ConstrainedVelocity
+    )
+}
+
+/// True for kernels that determine the motion and its events.
+fn is_of_motion(kernel: Kernel) -> bool {
+    matches!(
+        kernel,
+        Kernel::Rate
+            | Kernel::Gaps
+            | Kernel::Conditions(_)
+            | Kernel::Coefficient(_)
+            | Kernel::Blow(_)
+            | Kernel::Contact(_)
+            | Kernel::Reset(_)
+            | Kernel::Entry(_)
+            | Kernel::Focus(_)
+            | Kernel::Trace(_)
     )
 }
 

@@ -83,6 +83,7 @@ impl<'a> Whole<'a> {
             conserves_energy: false,
             can_be_narrow: of_modes.iter().any(|mode| mode.can_be_narrow),
             can_lose_rank: of_modes.iter().any(|mode| mode.can_lose_rank),
+            depends_on_time: of_modes.iter().any(|mode| mode.depends_on_time),
             drifts: of_modes.iter().any(|mode| mode.drifts),
             is_linear: of_modes.iter().all(|mode| mode.is_linear),
             varies: true,

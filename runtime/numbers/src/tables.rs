@@ -154,6 +154,8 @@ pub struct Tables {
     pub can_be_narrow: bool,
     /// True if constraint forms may become dependent.
     pub can_lose_rank: bool,
+    /// True if time occurs in rates, gaps, conditions or laws.
+    pub depends_on_time: bool,
     /// True if integration drifts off the constraints, so that runs project states back onto them.
     pub drifts: bool,
     /// True if constraints are linear or affine in the velocities.

@@ -22,9 +22,8 @@ use super::lost::Lost;
 use super::run::{CertifiedImpact, CertifiedRun};
 use super::series::Field;
 use crate::contract::{Impacting, Variational};
-use crate::numbers::{Interval, Numbers, Rated, Row};
+use crate::numbers::{Interval, Numbers};
 use crate::state::StateVector;
-use crate::variations::transition::Strike;
 
 /// Number of squarings of the derivative for the bound of its spectral radius.
 const SQUARINGS: u32 = 8;
@@ -246,14 +245,14 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
 
     /// The impact at the last return to the section, for all motions from a box.
     fn returned(&self, from: &Bounds<Sys::State>) -> Result<CertifiedImpact<Sys>, NotProved> {
+        if self.field.system.depends_on_time() {
+            return Err(NotProved::DependsOnTime);
+        }
         let mut run = CertifiedRun::new(self.field.system, 0.0, |i| from.at(i)).with_derivative();
         run.set_field(&self.field);
         let mut left = self.returns;
         loop {
             let impact = run.next_impact(self.horizon)?.ok_or(NotProved::NotMet)?;
-            if self.depends_on_time(&impact) {
-                return Err(NotProved::DependsOnTime);
-            }
             if impact.surface == self.surface {
                 left -= 1;
                 if left == 0 {
@@ -261,40 +260,6 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
                 }
             }
         }
-    }
-
-    /// True if rates, gaps or the law of the impact may depend on time. Functions of time are evaluated for all times,
-    /// with unbounded rates.
-    fn depends_on_time(&self, impact: &CertifiedImpact<Sys>) -> bool {
-        let surface = impact.surface;
-        let times = Rated {
-            value: Interval::WHOLE,
-            rate: Interval::WHOLE,
-        };
-        let mut states = Sys::Row::<Rated>::zeros(impact.before.count());
-        for (i, entry) in states.as_mut_slice().iter_mut().enumerate() {
-            *entry = Rated::steady(impact.before(i));
-        }
-        let parameters = self.field.steady_parameters();
-        let mut firsts = Sys::Firsts::<Rated>::zeros(self.field.system.firsts_len());
-        let begun = self
-            .field
-            .system
-            .begin(&parameters, times, &states, &mut firsts);
-        let gaps = self.field.system.clearances(&parameters, times, &states);
-        let strike = Strike {
-            surface,
-            chosen: None,
-            motion_start: self.field.system.motion_start(&impact.before.middle()),
-        };
-        let after = strike.applied(self.field.system, &parameters, times, &states);
-        let (Ok(()), Ok(gaps), Ok(Some(after))) = (begun, gaps, after) else {
-            return true;
-        };
-        let rates = &firsts.as_slice()[..impact.before.count()];
-        let parts = [rates, gaps.as_slice(), after.as_slice()];
-        let mut all = parts.into_iter().flatten();
-        all.any(|entry| entry.rate != Interval::ZERO || entry.value.is_whole())
     }
 }
 

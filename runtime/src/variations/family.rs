@@ -7,7 +7,6 @@ use super::eigenvalues::{Multipliers, eigenvalues};
 use super::group::Element;
 use super::orbit::Trial;
 use super::section::{Arrival, Itinerary, Section};
-use super::transition;
 use crate::contract::Variational;
 use crate::describe::Instance;
 use crate::effects::Effect;
@@ -72,17 +71,17 @@ where
     ///
     /// # Errors
     /// [`OrbitError::Section`] if the point has no image or the map has no derivative there,
-    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time.
+    /// [`OrbitError::DependsOnTime`] for a system that depends on time.
     pub fn image(
         &mut self,
         anchor: &Anchor<Sys>,
         point: &Sys::State,
         parameter: usize,
     ) -> Result<Image<Sys>, OrbitError> {
-        let trial = self.attempt(&anchor.0, *point, Some(parameter), None)?;
-        if transition::depends_on_time(self.system, &trial.passed.event)? {
+        if self.system.depends_on_time() {
             return Err(OrbitError::DependsOnTime);
         }
+        let trial = self.attempt(&anchor.0, *point, Some(parameter), None)?;
         let is_closed = self.is_closed(&trial)?;
         Ok(image(self.system, &trial, is_closed))
     }

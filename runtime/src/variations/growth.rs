@@ -4,7 +4,6 @@ use super::Tangent;
 use super::chart::{Chart, Fixed, add};
 use super::orbit::OrbitError;
 use super::section::Section;
-use super::transition;
 use crate::contract::Variational;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
@@ -26,9 +25,12 @@ where
     ///
     /// # Errors
     /// [`OrbitError::Section`] where the section is not met or the motion to it has no derivative,
-    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NoMultipliers`]
+    /// [`OrbitError::DependsOnTime`] for a system that depends on time, [`OrbitError::NoMultipliers`]
     /// if the growth is not finite.
     pub fn exponent(&mut self, state: &Sys::State, images: u32) -> Result<f64, OrbitError> {
+        if self.system.depends_on_time() {
+            return Err(OrbitError::DependsOnTime);
+        }
         let first = self.arrive(state, &mut [])?.before;
         let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
         let (chart, mut point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
@@ -41,7 +43,7 @@ where
         }
         let mut sum = 0.0;
         for made in 0..TURNING + images.max(1) {
-            let (growth, image) = self.grown(&chart, &mut point, &deviation, made == 0)?;
+            let (growth, image) = self.grown(&chart, &mut point, &deviation)?;
             if growth == 0.0 {
                 return Ok(f64::NEG_INFINITY);
             }
@@ -59,22 +61,16 @@ where
         chart: &Chart<Sys>,
         point: &mut Sys::State,
         deviation: &Sys::State,
-        is_first: bool,
     ) -> Result<(f64, Sys::State), OrbitError> {
         let length = chart.size(deviation);
-        // A section of a single point has no deviations. Its first return only tests for a dependence on time.
-        if length == 0.0 && !is_first {
+        // A section of a single point has no deviations.
+        if length == 0.0 {
             return Ok((0.0, *deviation));
         }
         let mut unit = self.system.zero_state();
-        if length > 0.0 {
-            add(&mut unit, 1.0 / length, deviation);
-        }
+        add(&mut unit, 1.0 / length, deviation);
         let mut tangents = [Tangent::of_state(unit)];
         let event = self.pass(point, self.returns, &mut tangents)?.event;
-        if is_first && transition::depends_on_time(self.system, &event)? {
-            return Err(OrbitError::DependsOnTime);
-        }
         *point = event.before;
         let image = tangents[0].state;
         let growth = chart.size(&image);

@@ -6,7 +6,6 @@ use super::chart::{Chart, Fixed, add, columns, dot, least_squares};
 use super::eigenvalues::{Multipliers, eigenvalues};
 use super::group::{Element, GENERATORS, align, pull};
 use super::section::{Arrival, Passed, Section, SectionError};
-use super::transition;
 use super::{Tangent, Undefined};
 use crate::contract::Variational;
 use crate::describe::{Instance, Topology};
@@ -140,18 +139,18 @@ where
     ///
     /// # Errors
     /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
-    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NotConverged`]
+    /// [`OrbitError::DependsOnTime`] for a system that depends on time, [`OrbitError::NotConverged`]
     /// after the last step, [`OrbitError::NoMultipliers`] if the eigenvalues are not finite.
     pub fn periodic(
         &mut self,
         near: &Sys::State,
         iterations: u32,
     ) -> Result<Orbit<Sys>, OrbitError> {
-        let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
-        let mut trial = self.attempt(&fixed, *near, None, None)?;
-        if transition::depends_on_time(self.system, &trial.passed.event)? {
+        if self.system.depends_on_time() {
             return Err(OrbitError::DependsOnTime);
         }
+        let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
+        let mut trial = self.attempt(&fixed, *near, None, None)?;
         let mut made = 0;
         while trial.residual > 0.0 && made < iterations {
             made += 1;

@@ -125,29 +125,6 @@ pub(super) fn arrive<Sys: Variational>(
     Ok(())
 }
 
-/// A generic time. Derivatives with respect to time are unlikely to vanish there by coincidence.
-const SOME_TIME: f64 = 0.739_085_133_215_160_7;
-
-/// True if the motion, the gaps or the transition of an event depend on time explicitly.
-pub(super) fn depends_on_time<Sys: Variational>(
-    system: &Sys,
-    event: &Event<Sys::State>,
-) -> Result<bool, Undefined> {
-    let parameters = dual_parameters(system, &[]);
-    let t = passing(SOME_TIME);
-    let state = dual_state::<Sys>(&event.before, &[]);
-    let mut firsts = Sys::Firsts::<Dual>::zeros(system.firsts_len());
-    system.begin(&parameters, t, &state, &mut firsts)?;
-    let gaps = system.clearances(&parameters, t, &state)?;
-    let after = struck::<Sys, Dual>(system, &parameters, event, t, &state)?;
-    let rates = &firsts.as_slice()[..system.state_len()];
-    let parts = [rates, gaps.as_slice(), after.as_slice()];
-    Ok(parts
-        .into_iter()
-        .flatten()
-        .any(|component| component.slopes()[0] != 0.0))
-}
-
 /// A time as a dual number, varied along the first direction.
 fn passing(t: f64) -> Dual {
     Dual::new(t, [1.0, 0.0, 0.0, 0.0])
