@@ -104,7 +104,7 @@ pub(super) struct Resolver<'s> {
 /// Number of terms that are added before the size of numbers is checked.
 const TERMS_AT_ONCE: usize = 64;
 
-const FEWER_DIGITS: &str = "write it as a decimal";
+const FEWER_DIGITS: &str = "write it with fewer digits, or choose units in which it is smaller";
 const FEWER_LEVELS: &str = "write it with fewer levels";
 
 fn too_long() -> String {
