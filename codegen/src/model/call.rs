@@ -37,7 +37,11 @@ impl<'s> Resolver<'s> {
             let text = format!(
                 "the denominator of the exponent `{exponent}` is too large; the limit is {limit}"
             );
-            return self.refuse(exponent.at, text, "choose a smaller denominator; one third is `(1/3)`, not a decimal");
+            return self.refuse(
+                exponent.at,
+                text,
+                "choose a smaller denominator; one third is `(1/3)`, not a decimal",
+            );
         }
         let value = value?;
         if let Some(number) = self.pool.as_number(value).cloned() {
@@ -65,7 +69,11 @@ impl<'s> Resolver<'s> {
         let size = power.abs().to_f64() * base.bits() as f64;
         if size > NUMBER_BITS as f64 && power.is_integer() {
             let text = format!("an exact number of more than {NUMBER_BITS} bits");
-            return self.refuse(whole.at, text, "write it with fewer digits, or choose units in which it is smaller");
+            return self.refuse(
+                whole.at,
+                text,
+                "write it with fewer digits, or choose units in which it is smaller",
+            );
         }
         Some(())
     }
