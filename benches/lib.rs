@@ -1,4 +1,5 @@
-//! Items shared by the benchmarks: the same mechanics written by hand, problems with known solutions, tables.
+//! Items shared by the benchmarks: equations of shipped models written by hand, problems with known
+//! solutions, tables.
 //!
 //! `benches/README.md` describes their use, the measurements, and the limits of the measurements.
 

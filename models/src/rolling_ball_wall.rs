@@ -1,4 +1,4 @@
-//! A homogeneous ball that rolls on a table and does not slip on a wall at the moment of impact.
+//! A ball with equal moments of inertia that rolls on a table and does not slip on a wall at the moment of impact.
 //!
 //! Facts: at an impact, rolling on table and wall together changes the velocity along the wall to
 //! `ydot+ = ((r^2 + k^2) ydot - k^2 r omega_z)/(r^2 + 2 k^2)`. An elastic impact reverses the velocity towards the

@@ -100,7 +100,7 @@ def differences(end, values):
 
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("framework", FRAMEWORKS)
-def test_derivatives_are_differences(framework, case):
+def test_derivatives_agree_with_finite_differences(framework, case):
     make, jacobians = FRAMEWORKS[framework]
     build, varied, arguments = CASES[case]
     model, values = build(), list(varied.values())
@@ -157,7 +157,7 @@ def test_functions_of_torch_take_batches():
     np.testing.assert_allclose(heights.grad[:, 0], one, rtol=1e-12)
 
 
-def test_a_start_that_depends_on_a_parameter_stays():
+def test_a_start_keeps_its_declared_value_when_its_parameter_is_varied():
     model = Model.from_text(
         "Drop { coordinates { x; } parameters { a = 2; } lagrangian = dot(x)^2/2 - a*x; initial { x = a; until = 1; } }"
     )

@@ -218,7 +218,7 @@ fn a_density_on_the_covering_space_does_not_end_the_search() {
     assert_eq!(found(robot).as_deref(), Some("1/abs(dot(theta))"));
 }
 
-/// Gravity turns the sleigh, so that no power of `|thetadot|` is an invariant density. Friction contracts volumes.
+/// The torque of gravity leaves no power of `|thetadot|` as an invariant density. Friction contracts volumes.
 #[test]
 fn nothing_is_found_where_torque_or_friction_breaks_the_factor() {
     let sleigh = |potential: &str, forces: &str| {

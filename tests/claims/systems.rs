@@ -61,7 +61,7 @@ fn balls_on_a_plane() {
     let symmetric = "A*(b1^2 + b2^2) + C*b3^2";
     let round = "A*(b1^2 + b2^2 + b3^2)";
     let rubber = "rubber: s3 = 0;";
-    // Chaplygin's sphere and the homogeneous ball, each with and without spinning.
+    // Chaplygin's sphere and the ball with equal moments of inertia, each with and without spinning.
     assert_eq!(verified(&ball("0, 0, 0", triaxial, "")), Existence::Global);
     assert_eq!(verified(&ball("0, 0, 0", round, "")), Existence::Global);
     assert_eq!(

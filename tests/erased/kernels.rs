@@ -1,6 +1,5 @@
 //! Compares every emitted kernel, called by a pointer, with the kernel loaded from the text, at random points and over
-//! every kind of number. Values have the same bits, except that zeros may differ in sign, and the same guards
-//! fail.
+//! every kind of number. Values have the same bits, where all NaN count as equal, and the same guards fail.
 
 use std::fmt::Debug;
 

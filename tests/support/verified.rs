@@ -1,6 +1,6 @@
-//! Verdicts with independent checks by finite differences. The demand of a field is the derivative along it that a
-//! density requires of its logarithm `G`. Demands are compared with the mean curvature and with the divergence of the
-//! motion, densities with this divergence, and obstructions with brackets.
+//! Verdicts with independent checks by finite differences. If `exp(G)` is an invariant density, the derivative of `G`
+//! along a field of D has a certain value, the demand of the field. Demands are compared with the mean curvature and
+//! with the divergence of the motion, densities with this divergence, and obstructions with brackets.
 
 use dalembert_codegen::claims::find_obstruction;
 use dalembert_codegen::model::Coordinate;
@@ -47,7 +47,7 @@ pub fn verified(source: &str) -> Existence {
     decided.existence()
 }
 
-/// Compares demands and obstruction with finite differences.
+/// Compares the demands of a frame with the mean curvature, and the obstruction with brackets.
 fn check_curvature(decided: &Decided, source: &str) {
     let (model, parameters) = (&decided.model, decided.defaults());
     let n = model.coordinates.len();

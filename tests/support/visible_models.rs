@@ -233,7 +233,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A homogeneous ball on a plane.
+    /// A ball with equal moments of inertia on a plane.
     pub HomogeneousBall {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { m > 0 = 2; I > 0 = 3; r > 0 = 5/4; }

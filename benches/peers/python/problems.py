@@ -1,4 +1,7 @@
-"""The workloads for peers that are called from Python: parameters, starts, impact maps (compiled by numba), energies."""
+"""The workloads for peers that are called from Python: parameters, starts, impact maps, energies.
+
+Numba compiles the impact maps of the disk and of the sleigh.
+"""
 
 import math
 
@@ -9,7 +12,8 @@ TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 ENSEMBLE_TOLERANCES = (1e-3, 1e-4, 1e-6, 1e-9, 1e-12)
 TRAJECTORIES = 10_000
 SAMPLES = 10
-PART = 80  # Trajectories that are timed together, so briefly that other programs leave some repetitions undisturbed.
+# Number of trajectories that are timed together. They take so little time that other programs disturb only some repetitions.
+PART = 80
 
 M, R, I, J = 0.0025, 0.01, 1.25e-7, 6.25e-8
 A, B = 0.15, 0.20

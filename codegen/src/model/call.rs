@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Function, Node, Rational, SymbolId};
 
 use super::definitions::Definition;
-use super::resolve::{DerivedNames, Resolver, Scope, Value};
+use super::resolve::{DerivedNames, FEWER_DIGITS, Resolver, Scope, Value, too_long};
 use super::symbols::Meaning;
 use crate::diagnostics::{Location, listed, nearest};
 use crate::spec::{
@@ -37,7 +37,11 @@ impl<'s> Resolver<'s> {
             let text = format!(
                 "the denominator of the exponent `{exponent}` is too large; the limit is {limit}"
             );
-            return self.refuse(exponent.at, text, "a third is written `(1/3)`");
+            return self.refuse(
+                exponent.at,
+                text,
+                "choose a smaller denominator; one third is `(1/3)`, not a decimal",
+            );
         }
         let value = value?;
         if let Some(number) = self.pool.as_number(value).cloned() {
@@ -64,8 +68,7 @@ impl<'s> Resolver<'s> {
         }
         let size = power.abs().to_f64() * base.bits() as f64;
         if size > NUMBER_BITS as f64 && power.is_integer() {
-            let text = format!("an exact number of more than {NUMBER_BITS} bits");
-            return self.refuse(whole.at, text, "write it as a decimal");
+            return self.refuse(whole.at, too_long(), FEWER_DIGITS);
         }
         Some(())
     }

@@ -104,10 +104,11 @@ pub(super) struct Resolver<'s> {
 /// Number of terms that are added before the size of numbers is checked.
 const TERMS_AT_ONCE: usize = 64;
 
-const FEWER_DIGITS: &str = "write it as a decimal";
+pub(super) const FEWER_DIGITS: &str =
+    "write it with fewer digits, or choose units in which it is smaller";
 const FEWER_LEVELS: &str = "write it with fewer levels";
 
-fn too_long() -> String {
+pub(super) fn too_long() -> String {
     format!("an exact number of more than {NUMBER_BITS} bits")
 }
 

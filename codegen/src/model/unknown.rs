@@ -147,7 +147,7 @@ impl Resolver<'_> {
             .any(|output| output.declared.name.text == name)
         {
             return format!(
-                "`{name}` is an output, which no expression names; write what it stands for, or declare that with `let`"
+                "`{name}` is an output, and expressions cannot use outputs; declare its expression with `let` and use that"
             );
         }
         let special = self

@@ -1,7 +1,7 @@
-//! Registers for straight-line code.
+//! Register allocation for straight-line code.
 //!
-//! Operations are processed in their order. A value with a place in memory (a constant, an argument, a value in the
-//! frame) is read from there if one read is left, and loaded into a register if several are left. If no register is
+//! Operations are processed in their order. A value with a place in memory (a constant, a number behind a pointer
+//! argument, a value in the frame) is read from there if one read is left, and loaded into a register if several are left. If no register is
 //! free, the value with the latest next read is evicted. It is stored in the frame unless it has a place in memory.
 //! Calls preserve no register.
 
@@ -38,7 +38,7 @@ pub(super) enum Instruction {
     MulAdd(Register, Register, Operand),
     Turned(Register, [Register; 2]),
     AtFirst(Register, Operand),
-    /// Adds a product from an order on.
+    /// Adds a product of two numbers in memory if the current order of the series is at least this one.
     AddFrom(Register, i32, [Place; 2]),
     /// Calls the function at an address, with arguments in the first registers and this place.
     Call(usize, Option<Place>),
@@ -275,7 +275,7 @@ impl Allocation {
         register
     }
 
-    /// Same as [`Self::register`], but an operand in memory stays there if no other read of the value is left.
+    /// Same as [`Self::register`], but a value in memory is read from there if this is its last read.
     fn operand(&mut self, value: Value) -> Operand {
         match (self.found(value), self.reads[value.index()].len()) {
             (Operand::Register(_), _) | (_, 2..) => Operand::Register(self.register(value)),

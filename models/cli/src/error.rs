@@ -124,12 +124,12 @@ pub enum CliError {
         flag: &'static str,
         /// Its path.
         path: PathBuf,
-        /// The error of the system.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A file that another run, or another flag of the same run, is writing.
     #[error(
-        "{flag} {}: another flag or another run is writing this file; give another file, or wait until that run has ended",
+        "{flag} {}: another flag or another run is writing this file; give another file, or wait until the other run has ended",
         path.display()
     )]
     Busy {

@@ -16,7 +16,7 @@ pub struct Wanted<'a> {
     pub grid: Grid,
     /// An empty trace, if a picture is requested.
     pub trace: Option<Trace>,
-    /// Receivers of samples, impacts and contacts, in order of time.
+    /// Receivers. Each gets the samples, impacts and contacts in order of time.
     pub keeps: Vec<&'a mut dyn Keep>,
 }
 

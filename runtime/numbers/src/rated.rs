@@ -113,7 +113,7 @@ impl Numbers for Rated {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number in the interval of values, which bounds nothing.
+    /// A number in the interval of values. It bounds neither values nor rates.
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
@@ -160,7 +160,7 @@ impl Numbers for Rated {
         }
     }
 
-    /// Values jump where the sign changes: the rates are unbounded there.
+    /// Values may jump where the sign changes, so the rates are unbounded there.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
@@ -213,7 +213,7 @@ mod tests {
     use super::*;
     use crate::interval::tests::{FUNCTIONS, Sample};
 
-    /// Values and chords of every function on stretches of paths lie in the intervals of the function.
+    /// Values and slopes of chords of every function lie in the intervals that it returns for a stretch of a path.
     #[test]
     fn values_and_slopes_of_chords_lie_in_their_intervals() {
         for function in FUNCTIONS {
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_have_no_value_is_anything() {
+    fn a_function_that_may_have_no_value_has_the_whole_line() {
         let stretch = |lo: f64, hi: f64| Rated {
             value: Interval::new(lo, hi),
             rate: Interval::point(hi - lo),

@@ -921,7 +921,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_have_no_value_is_anything() {
+    fn a_function_that_may_have_no_value_has_the_whole_line() {
         let stretch = |lo: f64, hi: f64| paths(lo, hi)[0];
         let is_vague = |model: TaylorModel| model.error.is_nan() || model.error > 1e9;
         for outside in [

@@ -37,7 +37,7 @@ pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 7];
 /// A function that writes values of parameters.
 pub type Defaults = dyn Fn(&mut [f64]) + Send + Sync;
 
-/// The global form of a form.
+/// The place of the global form that belongs to a form.
 pub enum Global {
     /// The form is the global one.
     Itself,
@@ -89,7 +89,8 @@ impl fmt::Debug for Form {
 }
 
 impl Form {
-    /// The least of [`CAPACITIES`] that holds the vectors of this form and of the global one; `None` if none does.
+    /// The least of [`CAPACITIES`] with room for the vectors, parameters, kernels and series of this form, and for the
+    /// states of the global one; `None` if none has.
     pub const fn capacity(&self) -> Option<usize> {
         let dimensions = &self.tables.value().dimensions;
         let n = dimensions.coordinates;

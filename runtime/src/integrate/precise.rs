@@ -20,7 +20,7 @@ impl<S: StateVector> Precise<S> {
         }
     }
 
-    /// The state `state`, with the rounding errors of the components that equal those of `self`.
+    /// `state`. A component that equals that of `self` keeps its rounding error; the others have none.
     #[inline]
     pub(super) fn kept(&self, state: &S) -> Self {
         let mut kept = Self::new(*state);

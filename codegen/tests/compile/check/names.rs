@@ -30,7 +30,7 @@ fn unknown_names_come_with_a_suggestion() {
     );
     refused_in(
         "outputs { J: x; dJ: «J» - 1; }",
-        "unknown name `J`\nhelp: `J` is an output, which no expression names; write what it stands for, or declare that with `let`",
+        "unknown name `J`\nhelp: `J` is an output, and expressions cannot use outputs; declare its expression with `let` and use that",
     );
     refused_term(
         "«banana»",
@@ -87,7 +87,7 @@ fn numbers_without_a_value_are_refused() {
     refused_term("2^«(2^40)»", "is too large; the limit is 4096");
     refused_term(
         "x^«(1/4096)»",
-        "the denominator of the exponent `1/4096` is too large; the limit is 4095\nhelp: a third is written `(1/3)`",
+        "the denominator of the exponent `1/4096` is too large; the limit is 4095\nhelp: choose a smaller denominator; one third is `(1/3)`, not a decimal",
     );
     refused_term("«(10^30)^4000»", "an exact number of more than 4096 bits");
     refused_term(

@@ -19,7 +19,7 @@ const STRIPES: usize = 64;
 
 /// A colour bar.
 pub struct Bar<'a> {
-    /// The name of the numbers.
+    /// The name of the quantity.
     pub name: &'a str,
     /// The numbers that the first and the last colour show.
     pub range: [f64; 2],
