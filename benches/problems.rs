@@ -319,8 +319,8 @@ mod tests {
     use super::*;
 
     /// From the tolerance 1e-4 to the finest one of an integrator, each digit of tolerance lowers the error by at least
-    /// 0.4 digits in every problem. An error below 1e-10 also passes, because billiards amplify rounding errors to about
-    /// that size. A wrong digit in a stored solution would make this test fail.
+    /// 0.4 digits in every problem. An error below 1e-10 also passes, because billiards amplify rounding errors to
+    /// about that size. A wrong digit in a stored solution would make this test fail.
     #[test]
     fn errors_fall_with_the_tolerance() {
         for problem in ALL {

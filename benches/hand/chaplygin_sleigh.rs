@@ -100,8 +100,8 @@ fn tip_gradient<T: Number>(
     ([h_along, h_spin], (sin, cos))
 }
 
-/// Elastic impact of a tip, by the projected gradient in the frame of D. The two fields of the frame, the motion along the
-/// blade and the rotation about its point of contact, are orthogonal.
+/// Elastic impact of a tip, by the projected gradient in the frame of D. The two fields of the frame, the motion along
+/// the blade and the rotation about its point of contact, are orthogonal.
 #[inline(always)]
 pub fn impact<T: Number>(
     sleigh: &ChaplyginSleigh,

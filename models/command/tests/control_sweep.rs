@@ -72,8 +72,8 @@ fn a_parameter_is_varied() {
     }
 }
 
-/// The ball starts and ends at rest at height 1. Without an impact, the force that holds it costs `m^2 g^2 T/2 = 10`. The
-/// costs with one impact, for two coefficients of restitution, were computed with this library.
+/// The ball starts and ends at rest at height 1. Without an impact, the force that holds it costs `m^2 g^2 T/2 = 10`.
+/// The costs with one impact, for two coefficients of restitution, were computed with this library.
 #[test]
 fn losses_at_impacts_cost_force() {
     let line = "controlled_ball --initial x=1 --end x=1,y=0 --impacts 0..1 --vary e=0.8,1";

@@ -263,9 +263,9 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         }
     }
 
-    /// True if rates, gaps or the law of this impact may depend on time. They are evaluated over all times, with the time
-    /// as the only variable; a rate whose enclosure is not exactly 0 counts as dependence. Conditions of surfaces are not
-    /// examined.
+    /// True if rates, gaps or the law of this impact may depend on time. They are evaluated over all times, with the
+    /// time as the only variable; a rate whose enclosure is not exactly 0 counts as dependence. Conditions of surfaces
+    /// are not examined.
     fn depends_on_time(&self, impact: &CertifiedImpact<Sys>) -> bool {
         let surface = impact.surface;
         let times = Rated {

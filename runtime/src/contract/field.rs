@@ -75,9 +75,9 @@ pub trait VectorField {
         false
     }
 
-    /// True if, at these values of the parameters, rates may have features much narrower than those of a sine, or cannot
-    /// be bounded. False if [`VectorField::can_be_narrow`] is false. A run calls it once; the call costs about as much as
-    /// a few evaluations of the rate.
+    /// True if, at these values of the parameters, rates may have features much narrower than those of a sine, or
+    /// cannot be bounded. False if [`VectorField::can_be_narrow`] is false. A run calls it once; the call costs about
+    /// as much as a few evaluations of the rate.
     fn has_narrow_rates(&self) -> bool {
         self.can_be_narrow()
     }

@@ -25,8 +25,8 @@ pub struct Region<'a> {
 }
 
 impl<'a> Region<'a> {
-    /// The declared region in its plane of two coordinates, with the other coordinates of `q`; `None` if none is declared
-    /// in such a plane.
+    /// The declared region in its plane of two coordinates, with the other coordinates of `q`; `None` if none is
+    /// declared in such a plane.
     pub fn about(model: &'a dyn AnyModel, q: &'a [f64]) -> Option<Self> {
         let view = model.description().view.as_ref()?;
         let plane = view.plane.filter(|_| view.region)?;
@@ -115,8 +115,8 @@ impl<'a> Region<'a> {
     }
 
     /// True if the region depends on the coordinates of the plane only. At each of four points, the test compares the
-    /// value at the first state with three others: at the end with the last state, at an intermediate time with the first
-    /// state, and at another with the last state.
+    /// value at the first state with three others: at the end with the last state, at an intermediate time with the
+    /// first state, and at another with the last state.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let same = |t: f64, q: &[f64], point: [f64; 2]| {
             let (now, then) = (self.value(point), self.value_at(t, q, point));
