@@ -10,7 +10,7 @@ fn body<T: Number>(sleigh: &ChaplyginSleigh) -> [T; 3] {
     parameters([sleigh.m, sleigh.I, sleigh.a])
 }
 
-/// `g^{-1} r`. Its component of theta is `(r_theta + a (r_x sin - r_y cos))/I`. No `r_theta` stands for 0.
+/// `g^{-1} r`. Its component of theta is `(r_theta + a (r_x sin - r_y cos))/I`. `None` for `r_theta` means 0.
 #[inline(always)]
 fn raise<T: Number>(
     [m, i, a]: [T; 3],
@@ -100,8 +100,8 @@ fn tip_gradient<T: Number>(
     ([h_along, h_spin], (sin, cos))
 }
 
-/// Elastic impact of a tip, by the projected gradient in the frame of D. The fields along the blade and turning are
-/// orthogonal.
+/// Elastic impact of a tip, by the projected gradient in the frame of D. The two fields of the frame, the motion along
+/// the blade and the rotation about its point of contact, are orthogonal.
 #[inline(always)]
 pub fn impact<T: Number>(
     sleigh: &ChaplyginSleigh,
@@ -124,7 +124,7 @@ pub fn impact<T: Number>(
     ]
 }
 
-/// The rate on D, in the frame along the blade and turning.
+/// The rate on D, in the frame of the motion along the blade and the rotation.
 #[inline(always)]
 pub fn reduced_rate<T: Number>(
     sleigh: &ChaplyginSleigh,

@@ -35,7 +35,7 @@ pub(crate) fn evaluate<'py>(
         (Some(qdot), None) => Rates::Velocities(vector(built.as_ref(), "qdot", qdot)?),
         (None, Some(p)) => Rates::Momenta(vector(built.as_ref(), "p", p)?),
         (None, None) if model.describe().is_first_order => Rates::Velocities(vec![0.0; at.q.len()]),
-        _ => return Err(error::refused("q needs qdot or p")),
+        _ => return Err(error::refused("q needs either qdot or p")),
     };
     let origin = Origin {
         q: vector(built.as_ref(), "q", &at.q)?,

@@ -268,7 +268,7 @@ impl Given {
             }
             (Some(_), Some(qdot), None) => Rates::Velocities(vector(model, "qdot", qdot)?),
             (Some(_), None, Some(p)) => Rates::Momenta(vector(model, "p", p)?),
-            (Some(_), ..) => return Err(refused("q needs qdot or p")),
+            (Some(_), ..) => return Err(refused("q needs either qdot or p")),
             (None, ..) => return Err(refused("qdot and p need q")),
         };
         let q = self.q.as_deref().unwrap_or_default();

@@ -12,7 +12,7 @@ from test_equations import NAMES, admissible
 import dalembert
 from dalembert import RequestError, _native
 
-#: The models of the equations, and models with modes, fields and instantaneous constraints.
+#: The models of `test_equations`, and models with modes, fields and instantaneous constraints.
 EXPORTED = [*NAMES, "compass_walker", "rolling_ball_wall", "spring_mass_walker", "filippov_field", "refracted_particle"]
 
 
@@ -25,7 +25,10 @@ def compiler():
 
 
 def compiled(compiler, header, folder, name):
-    """The compiled functions of a header: numbers of results and of arrays by name, and a function that calls each by its name."""
+    """Compiles the functions of a header.
+
+    Returns a dictionary from their names to their numbers of results and of arrays, and `call`, which calls one by its name.
+    """
     folder.joinpath("model.h").write_text(header, encoding="utf-8")
     source = '#include "model.h"\n'
     sizes = {}

@@ -154,7 +154,7 @@ def test_fixed_steps_warn():
     ({"max_step": 0.1, "integrator": "rk4"}, "max_step: rk4, gauss4"),
     ({"state": {"xdot": 1}}, "state: unknown coordinate or velocity `xdot`"),
     ({"state": {"x": math.nan}}, "the position of `x` is not finite"),
-    ({"q": [1]}, "q needs qdot or p"),
+    ({"q": [1]}, "q needs either qdot or p"),
     ({"q": [1, 2], "qdot": [0, 0]}, "qdot: expected 1 numbers (x), got 2"),
     ({"state": {"x": 1}, "q": [1], "qdot": [1]}, "state: it changes the declared initial state"),
     ({"law": "elstic"}, "unknown law `elstic`; did you mean `elastic`?"),

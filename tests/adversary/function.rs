@@ -55,7 +55,7 @@ impl Function {
         }
     }
 
-    /// The derivative by a coordinate; `None` if it is 0.
+    /// The derivative with respect to a coordinate; `None` if it is 0.
     pub fn slope(&self, i: usize) -> Option<Self> {
         let chain = |outer: Self, inner: &Self| Some(Product(vec![outer, inner.slope(i)?]));
         match self {

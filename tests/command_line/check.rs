@@ -56,8 +56,8 @@ fn claims_are_listed_with_their_grounds() {
     assert!(claims[2].get("certificate").is_none());
 }
 
-/// A ball that is lifted to height 1 after every fall and keeps the fraction `r` of its speed. Its kinetic energy maps
-/// as E -> K (E + 1) with `K = r^2`.
+/// A ball that is lifted to height 1 after every fall and keeps the fraction `r` of its speed. From one
+/// reset to the next, the kinetic energy after the reset goes from `E` to `K (E + 1)`, with `K = r^2`.
 const LIFTED: &str = "
     Lifted {
         coordinates { x; }

@@ -71,7 +71,7 @@ fn close(found: f64, stored: f64, bound: f64, what: &str) {
     let error = (found - stored).abs() / (1.0 + stored.abs());
     assert!(
         error <= bound,
-        "{what}: {found} is not {stored}, by {error:e}"
+        "{what}: {found} instead of {stored}, relative error {error:e}"
     );
 }
 
@@ -321,7 +321,7 @@ fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
     check_wheel(&ten, &file["wheels"][1]);
 }
 
-/// A start off the limit cycle tends to it.
+/// A motion that starts away from the limit cycle converges to it.
 #[test]
 fn a_wheel_tends_to_its_limit_cycle() {
     let file = read("rimless_wheels");

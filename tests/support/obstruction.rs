@@ -55,8 +55,8 @@ impl<'c> Criterion<'c> {
             .find(|criterion| criterion.frame(q).is_some())
     }
 
-    /// The derivative of G by each coordinate; `None` unless the first N fields among the frame and the brackets of its
-    /// pairs are independent.
+    /// The derivatives of G with respect to all coordinates; `None` unless the first N fields among the frame and the
+    /// brackets of its pairs are independent.
     pub fn differential(&self, q: &[f64]) -> Option<Vec<f64>> {
         let free = q.len() - self.dependent.len();
         let fields = (1..=free).map(|i| format!("X{i}"));

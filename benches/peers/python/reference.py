@@ -140,7 +140,7 @@ def free_sleigh():
 
 
 def tip_gap(sleigh, t, side):
-    """Gap of a tip, its rate, the state, and the derivatives of the gap along the blade and by the angle."""
+    """Gap of a tip, its rate, the state, and the derivatives of the gap along the blade and with respect to the angle."""
     x, y = sleigh.place(t, pieces_of(mpf(1) / 2))
     theta, v, spin = sleigh.at(t)
     c, s, reach = mp.cos(theta), mp.sin(theta), side * sleigh.reach

@@ -49,7 +49,7 @@ pub(super) fn emit_lists(model: &Model) -> TokenStream {
         ),
         emit_entries(
             "quasi_velocity",
-            "quasi-velocities, counted after the coordinates of a state",
+            "quasi-velocities (component `n + index` of a state with `n` coordinates)",
             quasi,
         ),
         emit_surfaces(&model.surfaces),

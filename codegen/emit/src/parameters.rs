@@ -48,7 +48,7 @@ pub(super) fn emit_global(
     let model_type = Ident::new(type_name, Span::call_site());
     let global = names::global_name(type_name);
     let title = format!(
-        " [`{model_type}`] in its global form, off the constraints too, with the state `(q, p)`."
+        " [`{model_type}`] in its global form: the state `(q, p)` may also lie off the constraints."
     );
     let held = format!(" The {noun} with its parameters.");
     quote! {

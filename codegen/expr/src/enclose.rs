@@ -1,9 +1,9 @@
 //! Proofs that an expression has no zero in a box. Intervals enclose it on parts of the box until all are decided.
 //!
 //! A box may be unbounded. Boxes are halved in the variable `x/(1+|x|)`, in which the whole line has length 2. Where
-//! the derivative by a symbol keeps its sign, the values at both ends of the range of this symbol bound the expression.
-//! Horner's rule decides the signs of polynomials at large arguments, where terms that are enclosed one by one seem to
-//! cancel.
+//! the derivative with respect to a symbol keeps its sign, the values at both ends of the range of this symbol bound
+//! the expression. Horner's rule decides the signs of polynomials at large arguments, where terms that are enclosed one
+//! by one seem to cancel.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
@@ -156,7 +156,8 @@ impl Pool {
         Some((power, rest))
     }
 
-    /// Looks for a zero of an expression in a box; `slopes` are its derivatives by the symbols of the box, in order.
+    /// Looks for a zero of an expression in a box; `slopes` are its derivatives with respect to the
+    /// symbols of the box, in order.
     pub fn zeros_on(&self, id: ExprId, slopes: &[ExprId], domain: &Domain) -> Zeros {
         let mut roots = vec![id];
         roots.extend(slopes);

@@ -176,8 +176,8 @@ fn is_never_positive_gain(
     })
 }
 
-/// The value at rest, and the second derivatives by each velocity, of a function that depends on velocities only through
-/// multiples of their squares; `None` for other functions.
+/// The value at rest, and the second derivative with respect to each velocity, of a function that depends on velocities
+/// only through multiples of their squares; `None` for other functions.
 fn diagonal(pool: &mut Pool, gain: ExprId, velocities: &[SymbolId]) -> Option<Vec<ExprId>> {
     let zero = pool.zero();
     let at_rest: Vec<_> = velocities

@@ -195,7 +195,8 @@ fn extended<A: Arithmetic>(mut field: Vec<Series<A>>, demand: Series<A>) -> Dema
     field
 }
 
-/// Derivatives of series by components: coordinates and time. The derivative by a component without variable is 0.
+/// Derivatives of series with respect to components: coordinates and time. The derivative with respect to a component
+/// without variable is 0.
 struct Calculus<'c, 's, A> {
     jets: Jets<'s, A>,
     problem: &'c Problem,

@@ -37,9 +37,9 @@ pub(super) struct Passage {
     pub(super) positions: Vec<ExprId>,
     /// Velocities after the passage.
     pub(super) velocities: Velocities,
-    /// The derivatives of the positions by the coordinates.
+    /// The derivatives of the positions with respect to the coordinates.
     slopes: Vec<Vec<ExprId>>,
-    /// The derivatives of the positions by time.
+    /// The derivatives of the positions with respect to time.
     rates: Vec<ExprId>,
     /// `dh` and `d_t h`.
     gap: (Vec<ExprId>, ExprId),
@@ -58,7 +58,7 @@ type AffineRow<A> = (Vec<Series<A>>, Series<A>);
 /// The velocities after a passage.
 #[derive(Debug)]
 pub(super) enum Velocities {
-    /// Declared velocities, with their derivatives by the velocities before.
+    /// Declared velocities, with their derivatives with respect to the velocities before.
     Declared(Vec<ExprId>, Vec<Vec<ExprId>>),
     /// The velocities of a first-order system, which follow from the positions.
     Rates,

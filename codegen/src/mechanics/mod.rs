@@ -154,7 +154,7 @@ impl Coordinates {
     }
 }
 
-/// The derivatives of `expression` by each symbol that are not the zero node.
+/// The derivatives of `expression` with respect to the symbols, without those that are the zero node.
 fn gradient(model: &mut Model, expression: ExprId, symbols: &[SymbolId]) -> Vec<Entry<1>> {
     let mut entries = Vec::new();
     for (k, &symbol) in symbols.iter().enumerate() {

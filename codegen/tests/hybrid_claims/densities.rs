@@ -24,8 +24,8 @@ fn sleigh(arm: &str) -> String {
     )
 }
 
-/// A screw with a pitch that depends on the angle. The logarithm `G` of its density grows by minus the integral of the
-/// pitch.
+/// A screw whose advance per angle is `pitch*z`, where `pitch` is a function of the angle. In one turn the logarithm
+/// `G` of its density changes by minus the integral of `pitch`.
 fn screw(pitch: &str) -> String {
     format!(
         "pub Screw {{ coordinates {{ phi: angle; x; z; }} parameters {{ b > 0 = 1; k > 0 = 1/2; }}

@@ -1,9 +1,9 @@
 //! Series as two pieces of straight-line code: the code before the loop over the orders, and the body of the loop.
 //!
-//! Consecutive orders of the kept coefficients have a constant distance in memory. Unless the expansion is large, a row
-//! holds one order of all series: first the coefficients that are read one at a time, then the factors of sums, which
-//! are combined in SIMD lanes before the rest of the order. In a large expansion each series is contiguous, and sums
-//! are function calls.
+//! Consecutive orders of the kept coefficients have a constant distance in memory. Unless the expansion is large, the
+//! kept coefficients of one order are contiguous: first those that are read one at a time, then the factors of sums.
+//! The sums of an order are computed in SIMD lanes, before everything else of that order. In a large expansion each
+//! series is contiguous, and sums are function calls.
 
 use std::collections::BTreeMap;
 

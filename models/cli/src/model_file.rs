@@ -27,8 +27,9 @@ pub(crate) fn path(given: &str) -> Option<&Path> {
 }
 
 /// The models that replace those of the command line. With feedback, this is the selected model alone, with its inputs
-/// replaced by the feedback laws. Otherwise these are the models of the file that the model argument names. Afterwards
-/// the argument of a file names the selected model. `None` if the argument names no file and there is no feedback.
+/// replaced by the feedback laws. Otherwise these are the models of the file that the model argument names. If the
+/// argument names a file, it is replaced by the name of the selected model. `None` if the argument names no file and
+/// there is no feedback.
 ///
 /// # Errors
 /// The errors of [`read`] and of [`feedback::close`].

@@ -272,7 +272,7 @@ fn chords_of_a_rectangle_lead_to_the_images_of_the_end() {
 }
 
 #[test]
-fn a_lossy_wall_multiplies_the_times_behind_it() {
+fn a_lossy_wall_slows_the_motion_after_it() {
     // To the right wall and back with half the speed: 1.5/u + 1/(u/2) = 2.
     let found = motions_on(
         BOX,

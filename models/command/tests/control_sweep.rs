@@ -72,7 +72,8 @@ fn a_parameter_is_varied() {
     }
 }
 
-/// The references of a ball thrown down and caught at the same height, for two coefficients of restitution.
+/// The ball starts and ends at rest at height 1. Without an impact, the force that holds it costs `m^2 g^2 T/2 = 10`.
+/// The costs with one impact, for two coefficients of restitution, were computed with this library.
 #[test]
 fn losses_at_impacts_cost_force() {
     let line = "controlled_ball --initial x=1 --end x=1,y=0 --impacts 0..1 --vary e=0.8,1";
@@ -111,7 +112,7 @@ fn rows_and_pictures_do_not_depend_on_threads() {
 }
 
 #[test]
-fn values_without_a_search_are_told() {
+fn values_that_are_refused_are_listed_with_the_reason() {
     let line = "control controlled_ball --impacts 0 --vary x=-1,1";
     let done = run_on("", line);
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);

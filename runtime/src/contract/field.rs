@@ -75,14 +75,16 @@ pub trait VectorField {
         false
     }
 
-    /// True unless rates vary about as smoothly as sines, at the values of the parameters. The call costs about as much
-    /// as a few evaluations of the rate. A run makes it once.
+    /// True if, at these values of the parameters, rates may have features much narrower than those of a sine, or
+    /// cannot be bounded. False if [`VectorField::can_be_narrow`] is false. A run calls it once; the call costs about
+    /// as much as a few evaluations of the rate.
     fn has_narrow_rates(&self) -> bool {
         self.can_be_narrow()
     }
 
     /// Encloses all rates along a part of the motion. `component(i)` returns an enclosure of component `i` of the
-    /// state; `rate(i, ..)` receives an enclosure of its rate. Does nothing if [`VectorField::can_be_narrow`] is false.
+    /// state; `rate(i, ..)` receives an enclosure of its rate. Called only if [`VectorField::can_be_narrow`] is true.
+    /// The default does nothing.
     ///
     /// # Errors
     /// A [`Fault`] where the rates do not exist.

@@ -38,7 +38,7 @@ pub trait Described: Instance {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: &'static Description;
 
-    /// Names of the inputs. Their values follow the described parameters.
+    /// Names of the inputs. In a vector of parameters, the inputs come after the parameters of [`Self::DESCRIPTION`].
     const INPUTS: &'static [&'static str] = &[];
 
     /// The model as data, for [`Erased`](crate::erased::Erased); `None` for a model that only its own type can run.

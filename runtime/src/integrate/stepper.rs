@@ -73,9 +73,9 @@ pub trait Stepper<F: VectorField> {
         counters: &mut Counters,
     ) -> Result<(), StepFailure>;
 
-    /// Restarts after a jump, with the last step size but at most `limit`. An integrator with a fixed step returns to
-    /// it within a few steps. Components of the state that equal those at the last cut keep the rounding errors
-    /// recorded there.
+    /// Restarts after a jump, with the last step size but at most `limit`. With a fixed step size, the first step is at
+    /// most `limit`, and the full step size is reached again within a few steps. Components of the state that equal
+    /// those at the last cut keep the rounding errors recorded there.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the new state.
@@ -206,9 +206,9 @@ pub trait Stepper<F: VectorField> {
         false
     }
 
-    /// Scales the jump from the end of the step that [`Stepper::meet`] made to `state`, so that the discrete energies
-    /// of the steps before and after it are equal. Without such a step, or if the jump is not an elastic impact,
-    /// `state` is unchanged.
+    /// Changes `state`, the state after an elastic impact at the end of a step that [`Stepper::meet`] made: scales the
+    /// jump of the law so that the discrete energies of the steps before and after the impact are equal. Without such a
+    /// step, or if the jump is not an elastic impact, `state` is unchanged.
     fn rebound(
         &mut self,
         field: &F,
@@ -220,8 +220,8 @@ pub trait Stepper<F: VectorField> {
     }
 
     /// Time and state at the fraction of the step where the motion is cut. Call [`Stepper::prepare_dense`] first,
-    /// unless it is the end. [`Stepper::restart`] follows. Integrators with compensated sums keep the rounding error of
-    /// the state until then.
+    /// unless `theta` is 1. Call [`Stepper::restart`] afterwards; integrators with compensated sums keep the rounding
+    /// error of the state until then.
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
         match theta >= 1.0 {
             true => (self.end_time(), *self.end_state()),
@@ -239,7 +239,7 @@ pub type GapAt<'a, S> = dyn Fn(f64, &S) -> Result<(f64, f64), Fault> + 'a;
 /// The energy at a time and a state.
 pub type EnergyAt<'a, S> = dyn Fn(f64, &S) -> Result<f64, Fault> + 'a;
 
-/// An elastic impact in a step of fixed size, and the conserved energy.
+/// Data of the system and of the next step that [`Stepper::rebound`] needs.
 pub struct Rebound<'a, S> {
     /// The longest step with which to continue.
     pub limit: f64,

@@ -12,7 +12,7 @@ use crate::{Plan, State};
 /// Number of states that are evaluated in turn.
 const STATES: usize = 64;
 
-/// Number of evaluations in one timing, times the number of links.
+/// Product of the number of evaluations in one timing and the number of links.
 const EVALUATIONS: usize = 1 << 17;
 
 const GRAVITY: f64 = 9.81;

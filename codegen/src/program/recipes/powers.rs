@@ -1,4 +1,5 @@
-//! Powers that change the energy: of named forces, of constraints that do work, and of time.
+//! Powers that change the energy, by cause: named forces, constraints that do work, and the explicit dependence of the
+//! Lagrangian on time.
 //!
 //! Along the motion `d/dt (1/2 g(qdot, qdot) + V) = sum_a F_a(qdot) + lambda_a eta^a(qdot) - d_t L`, where `d_t` is
 //! taken at fixed position and velocity. Only constraints that are affine or nonlinear in the velocities may do work.

@@ -9,7 +9,8 @@ use crate::names;
 pub const MOTIONS: &str = "Motions of the models";
 
 /// The motion of a model from its declared start. The pictures show the declared view (without one, coordinates and
-/// velocities against time), the phase portrait of the first coordinate, and the change of the energy.
+/// velocities against time) and the phase portrait of the first coordinate. Unless the model is of first order, they
+/// also show the change of the energy.
 pub fn figure(description: &Description) -> Figure {
     let mut flags: Vec<(&str, String, String)> = Vec::new();
     let mut add = |name, title: &str, axes: String| flags.push((name, title.to_owned(), axes));
@@ -41,8 +42,8 @@ pub fn figure(description: &Description) -> Figure {
         title: "Motion from the declared start",
         chapter: MOTIONS,
         highlight: None,
-        caption: "Parameters and start are those of the declaration. If the energy is conserved, its change is the \
-                  error of the run."
+        caption: "Parameters and start are those of the declaration. A change of a conserved energy comes from the \
+                  errors of the run."
             .to_owned(),
         source: None,
         panels: panels.collect(),

@@ -25,7 +25,8 @@ pub struct Region<'a> {
 }
 
 impl<'a> Region<'a> {
-    /// The region through a position, if one is declared in a plane of two coordinates.
+    /// The declared region in its plane of two coordinates, with the other coordinates of `q`; `None` if none is
+    /// declared in such a plane.
     pub fn about(model: &'a dyn AnyModel, q: &'a [f64]) -> Option<Self> {
         let view = model.description().view.as_ref()?;
         let plane = view.plane.filter(|_| view.region)?;
@@ -59,8 +60,8 @@ impl<'a> Region<'a> {
         contours(window, cells, |point| self.value_at(t, self.q, point))
     }
 
-    /// True if the region depends on time and the coordinates of the plane only. The test compares the other coordinates
-    /// of the first and of the last state, at four points and three times.
+    /// True if the region depends on time and the coordinates of the plane only. The test compares the values with the
+    /// other coordinates of the first and of the last state, at four points and three times.
     pub fn depends_on_time_only(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let times = [0.37 * end, 0.61 * end, end];
         probes(path).into_iter().all(|point| {
@@ -113,8 +114,9 @@ impl<'a> Region<'a> {
         self.model.region(t, &q).unwrap_or(f64::NAN)
     }
 
-    /// True if the region depends on the coordinates of the plane only. The test compares four points at the first and
-    /// the last time, and at two times between with the other coordinates of the first and of the last state.
+    /// True if the region depends on the coordinates of the plane only. At each of four points, the test compares the
+    /// value at the first state with three others: at the end with the last state, at an intermediate time with the
+    /// first state, and at another with the last state.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let same = |t: f64, q: &[f64], point: [f64; 2]| {
             let (now, then) = (self.value(point), self.value_at(t, q, point));

@@ -17,7 +17,7 @@ pub(crate) enum Course {
 #[derive(Debug, Clone)]
 pub(crate) struct Shot {
     pub course: Course,
-    /// Coordinates of the motion at the end minus their given values.
+    /// Residuals of the equations at the end. Those of `connect` are coordinates minus their given values.
     pub misses: Vec<f64>,
     /// Derivatives of the misses, one column per unknown; empty if they were not requested or do not exist.
     pub slopes: Vec<Vec<f64>>,
@@ -33,7 +33,8 @@ pub(crate) trait Aim {
         0
     }
 
-    /// Unknowns that another method finds, from its initial guess with this index.
+    /// Unknowns from which a search can start, found by another algorithm (such as multiple shooting) from its initial
+    /// guess with this index. `None` if it finds none.
     fn guess(&mut self, index: usize) -> Option<Vec<f64>> {
         let _ = index;
         None

@@ -119,7 +119,7 @@ pub enum Unsought {
     Other,
     /// The second derivative of the running cost with respect to the inputs is not positive.
     #[error(
-        "the running cost has no least value at the start: its second derivative by the inputs is not positive there"
+        "the running cost has no least value at the start: its second derivative with respect to the inputs is not positive there"
     )]
     Input,
     /// A state lies behind a surface.
