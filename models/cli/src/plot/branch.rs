@@ -13,7 +13,7 @@ use super::style::{self, PALETTE};
 use crate::symbols;
 
 /// Width of the picture, in pixels.
-const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 560.0;
 
 /// Changes below this fraction of a value are rounding errors.
 const CONSTANT: f64 = 1e-9;

@@ -17,7 +17,7 @@ use dalembert_driver::ensemble::Quantity;
 use dalembert_driver::padded;
 
 /// Width of the picture, in pixels.
-const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 560.0;
 
 /// Radius of the dot of a cell, in pixels, and the margin around all dots as a fraction of their range.
 const DOT: f64 = 1.5;

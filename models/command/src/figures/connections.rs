@@ -2,7 +2,7 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
-use super::{chapters, simulated};
+use super::{HALF, chapters, simulated};
 
 /// The flags of the abbreviated action, the integral of the momentum along the path.
 const ALONG_THE_WAY: &str = "--output 'W = integral(momentum(x)*dot(x))' --axes x,W";
@@ -16,7 +16,7 @@ fn bouncing_ball() -> Figure {
     let panel = |name: &str, title: &str, flags: &str| Panel {
         name: name.to_owned(),
         title: title.to_owned(),
-        picture: Picture::Connect(format!("--from x=0 --to x=0.2 --time 5 {flags}")),
+        picture: Picture::Connect(format!("--from x=0 --to x=0.2 --time 5 {flags} {HALF}")),
     };
     Figure {
         model: "bouncing_ball",

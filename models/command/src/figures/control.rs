@@ -2,7 +2,7 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
-use super::{QUARTER, THIRD, chapters};
+use super::{HALF, QUARTER, THIRD, chapters};
 
 /// The grids of dynamic programming, with inputs weaker than gravity and with strong ones.
 const WEAK: &str = "--dp x=0..3:41,y=-5.5..5.5:41,u=-1..1:9 --steps 60";
@@ -33,7 +33,7 @@ fn panel(name: &str, title: &str, flags: impl Into<String>) -> Panel {
 }
 
 fn weak_forces() -> Figure {
-    let paths = |more: &str| format!("{more}{WEAK} {STARTS} --axes t,x,u");
+    let paths = |more: &str| format!("{more}{WEAK} {STARTS} --axes t,x,u {HALF}");
     Figure {
         model: "controlled_ball",
         name: "weak",

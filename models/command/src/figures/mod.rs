@@ -15,7 +15,8 @@ mod zeno;
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
-/// Flags for the width of pictures of which three or four stand side by side.
+/// Flags for the width of pictures of which two, three or four stand side by side.
+const HALF: &str = "--plot-width 560";
 const THIRD: &str = "--plot-width 480";
 const QUARTER: &str = "--plot-width 400";
 

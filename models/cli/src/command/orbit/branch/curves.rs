@@ -8,7 +8,7 @@ use crate::plot::curves::{self, Chart, Curve};
 use crate::symbols;
 
 /// Width of the picture, in pixels.
-const WIDTH: u32 = 720;
+const WIDTH: u32 = 560;
 
 /// Draws the curves, one colour for each kind of bifurcation.
 ///
