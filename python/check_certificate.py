@@ -801,7 +801,7 @@ def excludes_zero(tree, box, depth):
     low, high = enclosure(tree, box)
     if low > 0 or high < 0:
         return True
-    if depth == 0:
+    if depth == 0 or not box:
         return False
     name = max(box, key=lambda item: box[item][1] - box[item][0])
     low, high = box[name]
