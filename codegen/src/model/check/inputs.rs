@@ -22,9 +22,17 @@ impl Resolver<'_> {
     }
 }
 
+/// Functions in which inputs may act.
+pub(super) struct Acted<'a> {
+    /// The forces, of which a scene uses some.
+    pub forces: &'a [Force],
+    /// The rates of a `field`, which belong to every scene.
+    pub field: &'a [ExprId],
+}
+
 /// Refuses claims that hold for constant inputs but may fail for inputs that depend on the state: in the model, and in
-/// scenes with a force in which an input acts.
-pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes: &[Scene]) {
+/// scenes with a force or a rate in which an input acts.
+pub(super) fn check_claims(resolver: &mut Resolver<'_>, acted: &Acted<'_>, scenes: &[Scene]) {
     let spec = resolver.spec;
     let Some(first) = spec.inputs.first() else {
         return;
@@ -39,7 +47,7 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
             Some(name) => scenes
                 .iter()
                 .find(|scene| scene.name == name.text)
-                .and_then(|scene| resolver.acting_input(forces, &scene.parts)),
+                .and_then(|scene| resolver.acting_input(acted, &scene.parts)),
         };
         if let Some(input) = input {
             let because = may_depend(&input);
@@ -49,7 +57,7 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
         }
     }
     for scene in scenes.iter().filter(|scene| scene.parts.extras.volume) {
-        let Some(input) = resolver.acting_input(forces, &scene.parts) else {
+        let Some(input) = resolver.acting_input(acted, &scene.parts) else {
             continue;
         };
         let declared = spec
@@ -69,19 +77,20 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
 }
 
 impl Resolver<'_> {
-    /// The first input that acts in one of the forces that a scene uses.
-    fn acting_input(&self, forces: &[Force], parts: &Parts) -> Option<String> {
+    /// The first input that acts in a scene.
+    fn acting_input(&self, acted: &Acted<'_>, parts: &Parts) -> Option<String> {
         let inputs = self
             .symbols
             .parameters
             .iter()
             .filter(|parameter| parameter.is_input);
         let acts = |input: &&Parameter| {
-            let mut used = parts.forces.iter().filter_map(|force| forces.get(*force));
-            used.any(|force| {
-                let mut form = force.form.iter();
-                form.any(|expr| self.pool.depends_on(*expr, input.symbol))
-            })
+            let used = parts
+                .forces
+                .iter()
+                .filter_map(|&force| acted.forces.get(force));
+            let mut functions = used.flat_map(|force| &force.form).chain(acted.field);
+            functions.any(|expr| self.pool.depends_on(*expr, input.symbol))
         };
         let mut acting = inputs.filter(acts);
         acting.next().map(|input| input.name.display.clone())

@@ -155,7 +155,11 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     field::check_alone(resolver);
     field::check_surfaces(resolver);
     nonlinear::check_alone(resolver, &parts.constraints);
-    inputs::check_claims(resolver, &parts.forces, &parts.scenes);
+    let acted = inputs::Acted {
+        forces: &parts.forces,
+        field: parts.field.as_deref().unwrap_or_default(),
+    };
+    inputs::check_claims(resolver, &acted, &parts.scenes);
     constraints::check_independent(resolver, &parts.constraints);
     frame::check_coframe(resolver, &parts.frame, &parts.constraints);
     surfaces::check_reachable(resolver, &parts.surfaces, &parts.constraints);

@@ -198,3 +198,18 @@ fn forces_are_one_forms() {
         "a force does no work along `t`",
     );
 }
+
+#[test]
+fn inputs_in_rates_act_in_every_scene() {
+    let scene = |rest: &str| {
+        format!(
+            "P {{ coordinates {{ x; y; }} inputs {{ u; }} field {{ dot(x) = y; dot(y) = u; }}
+                scenes {{ s; }} claims for s {{ {rest} }} }}"
+        )
+    };
+    refused(
+        &scene("«density = 1»;"),
+        "`u` may depend on the state: only claims of conserved quantities are allowed with inputs",
+    );
+    accepted(&scene("conserved: x;"));
+}
