@@ -259,7 +259,9 @@ fn a_table_of_a_run_in_modes_starts_members() {
 fn a_fault_of_a_mode_names_its_coordinate() {
     let folder = Folder::new("fault");
     let model = folder.file("hop.dal", MODES);
-    let done = run(&format!("simulate {model} --mode single --set k=-1"));
+    let done = run(&format!(
+        "simulate {model} --mode single --set k=-1 --until 1"
+    ));
     let told = "metric_not_positive (coordinate \"y\"";
     let all = done.output.clone() + &done.errors;
     assert!(all.contains(told), "{all}");

@@ -21,6 +21,10 @@ pub struct Unsure<M>(pub M);
 impl<M: VectorField> VectorField for Unsure<M> {
     type State = M::State;
 
+    fn state_len(&self) -> usize {
+        self.0.state_len()
+    }
+
     fn rate(&self, t: f64, state: &M::State, rate: &mut M::State) -> Result<(), Fault> {
         self.0.rate(t, state, rate)
     }
@@ -53,6 +57,14 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
     type Gaps<L: Numbers> = M::Gaps<L>;
     type Firsts<L: Numbers> = M::Firsts<L>;
     type Jets<L: Numbers> = M::Jets<L>;
+
+    fn series_gap_count(&self) -> usize {
+        self.0.series_gap_count()
+    }
+
+    fn firsts_len(&self) -> usize {
+        self.0.firsts_len()
+    }
 
     fn work(&self) -> Option<Work> {
         self.0.work()
@@ -90,6 +102,14 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
 impl<M: System> System for Unsure<M> {
     type Vector = M::Vector;
     type Impulse = M::Impulse;
+
+    fn coordinate_count(&self) -> usize {
+        self.0.coordinate_count()
+    }
+
+    fn impulse_len(&self) -> usize {
+        self.0.impulse_len()
+    }
 
     fn position(&self, state: &M::State) -> M::Vector {
         self.0.position(state)
@@ -177,6 +197,10 @@ impl<M: System> System for Unsure<M> {
 
 impl<M: Lagrangian> Lagrangian for Unsure<M> {
     type Reactions = M::Reactions;
+
+    fn reaction_count(&self) -> usize {
+        self.0.reaction_count()
+    }
 
     fn force(&self, t: f64, q: &M::Vector, qdot: &M::Vector) -> M::Vector {
         self.0.force(t, q, qdot)
