@@ -111,8 +111,8 @@ fn a_stadium_keeps_its_particle() {
     assert!((energy - 0.5).abs() < 1e-12, "{energy}");
 }
 
-/// Of the times just before and just after the root, an impact takes the one at which the gap is closer to 0, but never
-/// one outside of the chart.
+/// An impact happens at the time just before or just after the root, whichever has the gap closer to 0, but never
+/// outside of the chart.
 #[test]
 fn an_impact_at_the_end_of_a_chart_is_inside_it() {
     let brink = BRINK.model();
