@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
@@ -107,13 +108,13 @@ class Ensemble:
         self._manifest, self._summary = directory.manifest(), directory.summary()
 
     @classmethod
-    def open(cls, directory: str | os.PathLike[str]) -> Ensemble:
+    def open(cls, directory: Any) -> Ensemble:
         """Open a directory that :meth:`Model.ensemble` has completed.
 
         Parameters
         ----------
-        directory : path
-            The directory.
+        directory : path, address or store
+            The directory, as in :meth:`Model.ensemble`.
 
         Returns
         -------
@@ -135,9 +136,9 @@ class Ensemble:
         return cls(opened)
 
     @property
-    def directory(self) -> Path:
-        """The directory. A temporary one is removed with this object."""
-        return self._directory.path
+    def directory(self) -> Path | str:
+        """The path of the directory, or the address of a store. A temporary directory is removed with this object."""
+        return self._directory.place
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -180,14 +181,23 @@ class Ensemble:
         return self._summary["members"]
 
     def __getitem__(self, name: str) -> np.ndarray:
-        import numpy as np
-
         if name not in self.columns:
             raise KeyError(f"`{name}` is no column; accepted: {', '.join(self.columns)}")
-        place = self.columns.index(name)
-        values = (row[place] for row in self._directory.rows())
-        read, kind = {"integer": (int, np.int64), "number": (float, np.float64), "text": (str, object)}[self._kinds[name]]
-        return np.fromiter(map(read, values), dtype=kind, count=len(self))
+        return self._arrays([name])[name]
+
+    def _arrays(self, names: Sequence[str]) -> dict[str, np.ndarray]:
+        """Columns by name."""
+        import numpy as np
+
+        types = {"integer": np.int64, "number": np.float64, "text": object}
+        arrays = {name: np.empty(len(self), dtype=types[self._kinds[name]]) for name in names}
+        done = 0
+        for values in self._directory.columns([self.columns.index(name) for name in names]):
+            after = done + len(values[0])
+            for array, part in zip(arrays.values(), values):
+                array[done:after] = part
+            done = after
+        return arrays
 
     def to_pandas(self) -> pandas.DataFrame:
         """All columns as a table of pandas.
@@ -199,12 +209,7 @@ class Ensemble:
         """
         import pandas as pd
 
-        texts = [name for name, kind in self._kinds.items() if kind == "text"]
-        missing = {name: ["NaN"] for name in self.columns if name not in texts}
-        # Numbers are read back to the bit by default from pandas 3 on.
-        precision = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
-        arguments = {"keep_default_na": False, "na_values": missing, "dtype": dict.fromkeys(texts, object), **precision}
-        return pd.concat([pd.read_csv(path, **arguments) for path in self._directory.files()], ignore_index=True)
+        return pd.DataFrame(self._arrays(self.columns))
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write all rows: the bytes of ``dalembert ensemble --csv`` for the same members.
@@ -214,14 +219,10 @@ class Ensemble:
         path : path
             The file.
         """
-        with open(path, "wb") as file:
-            for number, part in enumerate(self._directory.files()):
-                with open(part, "rb") as rows:
-                    header = rows.readline()
-                    if number == 0:
-                        file.write(header)
-                    while block := rows.read(1 << 20):
-                        file.write(block)
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerow(self.columns)
+        with open(path, "ab") as file:
+            file.writelines(self._directory.lines())
 
     def __repr__(self) -> str:
         outcomes = ", ".join(f"{kind} {count}" for kind, count in self.outcomes.items())
@@ -239,7 +240,7 @@ class Swept:
         seed: int | None = None,
         table: Mapping[str, Sequence[float]] | None = None,
         executor: Executor | Callable[[], Executor] | None = None,
-        directory: str | os.PathLike[str] | None = None,
+        directory: Any = None,
         density: Sequence[str] | Mapping[str, tuple[float, float] | None] | None = None,
         bins: int | tuple[int, int] = 100,
         every: float = 1.0,
@@ -270,11 +271,12 @@ class Swept:
             Columns by name, with one row for each member, instead of `vary`; a table of pandas, for example.
         executor : executor or callable, optional
             Anything with the `submit` of :mod:`concurrent.futures`: a pool of processes, ``client.get_executor()`` of Dask,
-            ``MPIPoolExecutor``, an executor of loky or submitit. Or a function that makes an executor; it is called again if the
+            ``MPIPoolExecutor``, an executor of loky or submitit, :class:`dalembert.ray.RayExecutor`. Or a function that makes an executor; it is called again if the
             executor breaks. Default: threads on all processors of this machine.
-        directory : path, optional
-            Directory in which results are kept in parts. If it holds parts of the same ensemble, the ensemble is continued.
-            Default: a temporary directory.
+        directory : path, address or store, optional
+            Directory in which results are kept in parts: Parquet files that other programs can read. If it holds parts of the same
+            ensemble, the ensemble is continued. ``"s3://bucket/path"``, ``"gs://.."``, ``"az://.."`` and stores of the package obstore
+            are directories too. Default: a temporary directory.
         density : sequence or mapping, optional
             Two quantities over which states of all members are counted: ``("x", "y")``, or with ranges ``{"x": (-1, 1), "y": None}``.
             Ranges that are not given come from short runs of a few members.

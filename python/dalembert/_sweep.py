@@ -51,7 +51,7 @@ def ensemble(
     seed: int | None,
     density: dict[str, Any] | None,
     executor: Executor | Callable[[], Executor] | None,
-    directory: str | os.PathLike[str] | None,
+    directory: Any,
     plan: Plan,
     progress: bool,
     course: dict[str, Any],
@@ -65,7 +65,7 @@ def ensemble(
         spec["density"] = density | {"axes": native.axes()}
     kept = Directory(tempfile.mkdtemp(prefix="dalembert-") if directory is None else directory)
     # A temporary directory is removed with its object, or at once after an error.
-    removal = weakref.finalize(kept, shutil.rmtree, kept.path, ignore_errors=True) if directory is None else None
+    removal = weakref.finalize(kept, shutil.rmtree, kept.place, ignore_errors=True) if directory is None else None
     try:
         kept.begin(_identity(model, spec, native, rows))
         _complete(kept, model, spec, native, rows, executor, plan, progress)
@@ -103,11 +103,10 @@ def _complete(
             return run_unit, (work, unit.first, unit.last, longest, part, unit.attempts, _native.version())
 
         units = Units(executor, call, kept.gaps(count), plan)
-    header = native.header()
     try:
         with _shown(progress, count, model.name, sum(part["members"] for part in kept.parts.values())) as tell:
             for first, unit in units.results():
-                kept.add(first, header, unit)
+                kept.add(first, unit)
                 tell(unit["members"])
     except BaseException:
         native.stop()
@@ -266,7 +265,7 @@ def _identity(model: Model, spec: dict[str, Any], native: _native.NativeEnsemble
     varied = spec["varied"] | {"table": None if rows is None else hashlib.sha256(rows.tobytes()).hexdigest()}
     return {
         "version": _native.version(), "model": model.name, "scene": model._scene, "source": model.source,
-        "parameters": dict(model.parameters), **spec, "varied": varied, "columns": native.columns(),
+        "parameters": dict(model.parameters), **spec, "varied": varied, "columns": native.columns(), "rows": "parquet",
     }
 
 

@@ -24,7 +24,9 @@ AHEAD = 2
 #: Number of units for each worker over which the pace is measured.
 RECENT = 4
 #: Names of the errors by which executors report a lost worker, in addition to errors of the standard library.
-LOST = frozenset({"KilledWorker", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
+LOST = frozenset({
+    "KilledWorker", "NodeDiedError", "OutOfMemoryError", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError",
+})
 
 
 class Executor(Protocol):

@@ -6,12 +6,14 @@ use std::time::{Duration, Instant};
 
 use dalembert_driver::ensemble::density::{Axis, Counts, Density, MOST_BINS, convergence};
 use dalembert_driver::ensemble::exact::ExactSum;
-use dalembert_driver::ensemble::row::{Columns, Field, Kind, csv_line};
+use dalembert_driver::ensemble::parquet::{self, Writer};
+use dalembert_driver::ensemble::row::{Columns, Field, Kind};
 use dalembert_driver::ensemble::runner::{Common, Done, Runner, Shared};
 use dalembert_driver::ensemble::{Members, Quantity, Tally, Values, is_reached, pilot};
 use dalembert_driver::words::Advice;
 use dalembert_driver::{AnyModel, Beginning, Integrator, OffConstraint, Settings};
-use numpy::PyReadonlyArray1;
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -86,7 +88,7 @@ impl Common for NativeEnsemble {
 
 /// Rows of some members, and sums over them.
 struct Unit {
-    rows: Vec<u8>,
+    rows: Writer<Vec<u8>>,
     tally: Tally,
     sums: Vec<ExactSum>,
     counts: Option<Counts>,
@@ -145,11 +147,6 @@ impl NativeEnsemble {
             .collect()
     }
 
-    /// The header of the rows as a line of CSV.
-    fn header<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.columns.header())
-    }
-
     /// The axes of the density, with their ranges.
     fn axes(&self) -> Vec<(String, [f64; 2], usize)> {
         let axes = self.density.iter().flat_map(|density| &density.axes);
@@ -173,7 +170,7 @@ impl NativeEnsemble {
     ) -> PyResult<Bound<'py, PyDict>> {
         let begun = Instant::now();
         let unit = py.detach(|| self.made(first..last, seconds))?;
-        let dict = self.told(py, &unit)?;
+        let dict = self.told(py, unit)?;
         dict.set_item("seconds", begun.elapsed().as_secs_f64())?;
         Ok(dict)
     }
@@ -247,7 +244,7 @@ impl NativeEnsemble {
             .filter(|(_, kind)| *kind != Kind::Text)
             .count();
         let mut unit = Unit {
-            rows: Vec::new(),
+            rows: Writer::new(Vec::new(), &self.columns, []).map_err(failed)?,
             tally: Tally::new(&self.columns),
             sums: vec![ExactSum::default(); numbers],
             counts: self.density.as_ref().map(Counts::new),
@@ -261,7 +258,7 @@ impl NativeEnsemble {
             let block = if is_abreast { BLOCK } else { 1 };
             let end = members.end.min(next + block);
             for (member, done) in (next..end).zip(runner.run(next..end)) {
-                unit.add(member, &done, &self.settings);
+                unit.add(member, done, &self.settings)?;
             }
             next = end;
             if looked.elapsed() >= PATIENCE {
@@ -276,11 +273,12 @@ impl NativeEnsemble {
     }
 
     /// A unit as data of Python.
-    fn told<'py>(&self, py: Python<'py>, unit: &Unit) -> PyResult<Bound<'py, PyDict>> {
+    fn told<'py>(&self, py: Python<'py>, unit: Unit) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         let tally = &unit.tally;
         dict.set_item("members", tally.members)?;
-        dict.set_item("rows", PyBytes::new(py, &unit.rows))?;
+        let rows = unit.rows.finish().map_err(failed)?;
+        dict.set_item("rows", PyBytes::new(py, &rows))?;
         dict.set_item("outcomes", tally.outcomes.clone())?;
         dict.set_item("not_reached", tally.strayed)?;
         let first = tally.first_strayed.iter();
@@ -317,7 +315,7 @@ impl NativeEnsemble {
 }
 
 impl Unit {
-    fn add(&mut self, member: u64, done: &Done, settings: &Settings) {
+    fn add(&mut self, member: u64, done: Done, settings: &Settings) -> PyResult<()> {
         self.tally
             .add(&done.row, |outcome| is_reached(outcome, settings));
         let numbers = done.row.iter().filter_map(|field| match field {
@@ -331,8 +329,33 @@ impl Unit {
         if let (Some(counts), Some(visits)) = (&mut self.counts, &done.visits) {
             counts.add(member, visits);
         }
-        self.rows.append(&mut csv_line(&done.row));
+        self.rows.add(done.row).map_err(failed)
     }
+}
+
+/// An error of Parquet.
+fn failed(error: impl std::error::Error) -> PyErr {
+    PyOSError::new_err(format!("Parquet: {error}"))
+}
+
+/// The values of a column of a part, in Parquet: an array of whole numbers or numbers, or a list of texts.
+#[pyfunction]
+pub fn column<'py>(py: Python<'py>, part: &[u8], place: usize) -> PyResult<Bound<'py, PyAny>> {
+    let part = part.to_vec().into();
+    let values = py.detach(|| parquet::column(&part, place)).map_err(failed)?;
+    Ok(match values {
+        parquet::Values::Integers(values) => values.into_pyarray(py).into_any(),
+        parquet::Values::Numbers(values) => values.into_pyarray(py).into_any(),
+        parquet::Values::Texts(values) => values.into_pyobject(py)?.into_any(),
+    })
+}
+
+/// The rows of a part, in Parquet, as lines of CSV.
+#[pyfunction]
+pub fn csv_lines<'py>(py: Python<'py>, part: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+    let part = part.to_vec().into();
+    let lines = py.detach(|| parquet::csv_lines(&part)).map_err(failed)?;
+    Ok(PyBytes::new(py, &lines))
 }
 
 /// The requested members of a model.

@@ -9,7 +9,7 @@
 //! | `events.rs`, `cells.rs` | events and callbacks of the user; sign changes of a function |
 //! | `export.rs` | models for other languages |
 //! | `run.rs` | runs that have ended, as arrays |
-//! | `ensemble.rs` | rows and sums of members of an ensemble |
+//! | `ensemble.rs` | rows and sums of members of an ensemble; columns of rows |
 //! | `evaluate.rs` | all derived quantities at a state |
 //! | `report.rs` | derivations and verdicts |
 //!
@@ -45,7 +45,7 @@ mod _native {
     #[pymodule_export]
     use super::{player, version};
     #[pymodule_export]
-    use crate::ensemble::NativeEnsemble;
+    use crate::ensemble::{NativeEnsemble, column, csv_lines};
     #[pymodule_export]
     use crate::export::{lines, to_c};
     #[pymodule_export]

@@ -3,6 +3,7 @@
 import ast
 import importlib
 import inspect
+import operator
 import re
 from pathlib import Path
 
@@ -27,11 +28,12 @@ def public():
                 value = getattr(value, "__func__", value)
                 if inspect.isfunction(value) and key[0] != "_" and value.__module__.startswith("dalembert"):
                     found.append((f"{name}.{key}", value))
-    for name in ("jax", "torch"):
+    for name, key in (("jax", "final_state"), ("torch", "final_state"), ("ray", "RayExecutor"), ("ray", "RayExecutor.submit")):
         try:
-            found.append((f"{name}.final_state", importlib.import_module(f"dalembert.{name}").final_state))
+            module = importlib.import_module(f"dalembert.{name}")
         except ImportError:
             continue
+        found.append((f"{name}.{key}", operator.attrgetter(key)(module)))
     return found
 
 

@@ -32,6 +32,7 @@ def blocks_of(page):
 def test_blocks_of_python_run_as_they_are(page, tmp_path, monkeypatch, capsys):
     matplotlib = pytest.importorskip("matplotlib")
     pytest.importorskip("pandas")
+    pytest.importorskip("obstore")
     matplotlib.use("Agg")
     monkeypatch.chdir(tmp_path)
     Path("skate.dal").write_text(SKATE.group(1), encoding="utf-8")
@@ -43,7 +44,10 @@ def test_blocks_of_python_run_as_they_are(page, tmp_path, monkeypatch, capsys):
 
 
 #: Programs of the page, with the packages that they need, and how they are started.
-PROGRAMS = {"processes": (None, []), "dask_cluster": ("distributed", []), "mpi": ("mpi4py", ["-m", "mpi4py.futures"])}
+PROGRAMS = {
+    "processes": (None, []), "dask_cluster": ("distributed", []), "ray_cluster": ("ray", []),
+    "mpi": ("mpi4py", ["-m", "mpi4py.futures"]),
+}
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

@@ -101,7 +101,7 @@ def whole(tmp_path_factory):
 def test_bytes_do_not_depend_on_workers_and_units(whole, tmp_path, monkeypatch, count):
     monkeypatch.setattr(_units, "FIRST", 5 * count)
     assert files(drops(workers=count, directory=tmp_path / "kept", **SMALL, **DENSITY), tmp_path) == whole
-    assert len(list((tmp_path / "kept").glob("part-*.csv"))) > 5
+    assert len(list((tmp_path / "kept").glob("part-*.parquet"))) > 5
     with ProcessPoolExecutor(count, SPAWN) as pool:
         assert files(drops(executor=pool, **SMALL, **DENSITY), tmp_path) == whole
 
@@ -187,6 +187,38 @@ def test_a_worker_of_dask_that_is_killed_costs_its_unit(whole, tmp_path):
         assert (tmp_path / "killed").exists()
 
 
+def test_a_worker_of_ray_that_is_killed_costs_its_unit(whole, tmp_path):
+    ray = pytest.importorskip("ray", reason="ray is not installed: pip install './python[test]'")
+    from dalembert.ray import RayExecutor
+
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, configure_logging=False)
+    try:
+        executor = RayExecutor(runtime_env={"env_vars": {"PYTHONPATH": os.path.dirname(__file__)}})
+        assert _units.workers_of(executor) == 2
+        assert files(drops(executor=executor, **SMALL, **DENSITY), tmp_path) == whole
+        deadly = Deadly(executor, str(tmp_path / "killed"))
+        assert files(drops(executor=deadly, **SMALL, **DENSITY), tmp_path) == whole
+        assert (tmp_path / "killed").exists()
+        with pytest.raises(EnsembleError, match="ZeroDivisionError"):
+            drops(executor=Raising(executor), unit=0.001, until=6)
+    finally:
+        ray.shutdown()
+
+
+def failing(*_):
+    return 1 / 0
+
+
+class Raising:
+    """An executor whose calls fail."""
+
+    def __init__(self, inner):
+        self.inner = inner
+
+    def submit(self, function, *arguments):
+        return self.inner.submit(failing, *arguments)
+
+
 class Job:
     """A future without the protocol of `concurrent.futures.wait`, as those of submitit."""
 
@@ -243,7 +275,7 @@ def test_losses_are_bounded_and_parts_are_kept(whole, tmp_path):
     arguments = {"directory": tmp_path / "kept", **SMALL, **DENSITY}
     with pytest.raises(EnsembleError, match="members .*: ZeroDivisionError"):
         drops(executor=Failing(3), workers=1, **arguments)
-    kept = sorted((tmp_path / "kept").glob("part-*.csv"))
+    kept = sorted((tmp_path / "kept").glob("part-*.parquet"))
     assert 1 <= len(kept) <= 3
     with pytest.raises(RequestError, match="not complete"):
         dalembert.Ensemble.open(tmp_path / "kept")
@@ -281,7 +313,7 @@ def test_an_interruption_keeps_what_is_done(whole, tmp_path):
     parts = sorted((tmp_path / "kept").glob("part-*.json"))
     if parts:
         parts[0].unlink()
-    (tmp_path / "kept" / "part-000000000000.csv.new").write_text("torn")
+    (tmp_path / "kept" / "part-000000000000.parquet.new").write_text("torn")
     assert files(drops(**arguments), tmp_path) == whole
 
 
@@ -338,7 +370,7 @@ def test_directories_that_are_not_this_ensemble_are_refused(tmp_path):
     with pytest.raises(RequestError, match="another run is writing"):
         drops({"x": (1, 2, 4)}, until=1, directory=kept)
     held.close()
-    part = kept / "part-000000000000.csv"
+    part = kept / "part-000000000000.parquet"
     part.write_bytes(part.read_bytes().replace(b"done", b"gone", 1))
     for again in [lambda: dalembert.Ensemble.open(kept), lambda: drops({"x": (1, 2, 4)}, until=1, directory=kept)]:
         with pytest.raises(EnsembleError, match="altered or lost.*remove part-000000000000.json"):

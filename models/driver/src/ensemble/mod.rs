@@ -5,6 +5,7 @@
 //! | `values`, `random`, `members` | the start of each member, as a function of its index |
 //! | `runner` | runs members and makes their rows, also after a refusal or a panic |
 //! | `row` | the columns of the rows, and rows as lines of CSV |
+//! | `parquet` | rows as Parquet, if the feature is on |
 //! | `density` | states of all members, counted in cells |
 //! | `pilot` | ranges of a density without given ranges |
 //! | `tally`, `exact` | sums over all members |
@@ -15,6 +16,8 @@
 pub mod density;
 pub mod exact;
 mod members;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 pub mod pilot;
 mod random;
 pub mod row;
