@@ -185,6 +185,28 @@ impl ComplexInterval {
         self.carried(value, [slope, bend], slope)
     }
 
+    /// The product of two numbers that vary, with the real parts of the product.
+    #[inline(always)]
+    fn product(self, other: Self, real: Interval) -> Self {
+        let [size, other_size] = [self, other].map(|factor| factor.real.magnitude());
+        let [sum, other_sum] = [self, other].map(Self::sum);
+        let [sway, other_sway] = [self, other].map(Self::sway);
+        let floor = size * other.floor + other_size * self.floor + ROUNDING * size * other_size;
+        let rounding = sum * other.rounding
+            + other_sum * self.rounding
+            + self.floor * other_sway
+            + other.floor * sway
+            + ROUNDING * (sum * other_sway + other_sum * sway);
+        Self {
+            real,
+            height: (size * other.height + other_size * self.height) * UP,
+            floor: floor * UP,
+            rounding: rounding * UP,
+            degree: self.degree.saturating_add(other.degree),
+        }
+        .or_anything()
+    }
+
     /// The rectangle if all its bounds are finite, otherwise [`ComplexInterval::ANYTHING`].
     #[inline(always)]
     fn or_anything(self) -> Self {
@@ -299,29 +321,12 @@ impl Mul for ComplexInterval {
 
     fn mul(self, other: Self) -> Self {
         let value = self.real * other.real;
-        if self.is_steady() && other.is_steady() {
-            return Self::steady(value);
+        match self.is_steady() && other.is_steady() {
+            true => Self::steady(value),
+            false => self.product(other, value.widened(self.height * other.height * UP)),
         }
-        let [size, other_size] = [self, other].map(|factor| factor.real.magnitude());
-        let [sum, other_sum] = [self, other].map(Self::sum);
-        let [sway, other_sway] = [self, other].map(Self::sway);
-        let floor = size * other.floor + other_size * self.floor + ROUNDING * size * other_size;
-        let rounding = sum * other.rounding
-            + other_sum * self.rounding
-            + self.floor * other_sway
-            + other.floor * sway
-            + ROUNDING * (sum * other_sway + other_sum * sway);
-        Self {
-            real: value.widened(self.height * other.height * UP),
-            height: (size * other.height + other_size * self.height) * UP,
-            floor: floor * UP,
-            rounding: rounding * UP,
-            degree: self.degree.saturating_add(other.degree),
-        }
-        .or_anything()
     }
 }
-
 impl Div for ComplexInterval {
     type Output = Self;
 
@@ -362,14 +367,10 @@ impl Numbers for ComplexInterval {
     }
 
     fn square(self) -> Self {
-        let product = self * self;
+        let value = self.real.square();
         match self.is_steady() {
-            true => Self::steady(self.real.square()),
-            false => Self {
-                real: self.real.square() - Interval::new(0.0, self.height).square(),
-                ..product
-            }
-            .or_anything(),
+            true => Self::steady(value),
+            false => self.product(self, value - Interval::new(0.0, self.height).square()),
         }
     }
 

@@ -264,8 +264,11 @@ impl Mul for Interval {
             self.hi * other.lo,
             self.hi * other.hi,
         ];
-        let lo = ends[0].min(ends[1]).min(ends[2].min(ends[3]));
-        let hi = ends[0].max(ends[1]).max(ends[2].max(ends[3]));
+        // A NaN is found below.
+        let least = |a: f64, b: f64| if a < b { a } else { b };
+        let largest = |a: f64, b: f64| if a > b { a } else { b };
+        let lo = least(least(ends[0], ends[1]), least(ends[2], ends[3]));
+        let hi = largest(largest(ends[0], ends[1]), largest(ends[2], ends[3]));
         let is_finite = (ends[0] + ends[1] + ends[2] + ends[3]).abs() < f64::INFINITY;
         match is_finite {
             true => {

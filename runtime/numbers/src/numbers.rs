@@ -353,6 +353,19 @@ pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
 
     /// All entries, in order, for writing.
     fn as_mut_slice(&mut self) -> &mut [L];
+
+    /// All entries within the capacity: those in use, then zeros. Their number is known at compile time, which makes
+    /// linear combinations faster. Linear combinations keep the zeros.
+    #[inline(always)]
+    fn padded(&self) -> &[L] {
+        self.as_slice()
+    }
+
+    /// Mutable form of [`Row::padded`]. The entries after those in use must stay 0.
+    #[inline(always)]
+    fn padded_mut(&mut self) -> &mut [L] {
+        self.as_mut_slice()
+    }
 }
 
 impl<L: Numbers, const D: usize> Row<L> for [L; D] {

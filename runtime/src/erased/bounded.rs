@@ -102,6 +102,16 @@ impl<L: Numbers, const C: usize> Row<L> for Bounded<L, C> {
     fn as_mut_slice(&mut self) -> &mut [L] {
         self.as_mut()
     }
+
+    #[inline(always)]
+    fn padded(&self) -> &[L] {
+        &self.values
+    }
+
+    #[inline(always)]
+    fn padded_mut(&mut self) -> &mut [L] {
+        &mut self.values
+    }
 }
 
 /// At most `K` times `C` numbers.

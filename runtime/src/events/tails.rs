@@ -255,13 +255,13 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.radii = self.radii.zeroed();
         self.degree = 1;
         for (k, (coefficient, power)) in terms.iter().zip(&POWERS[ratio]).enumerate().skip(1) {
-            let mut sum = 0.0;
+            let mut bits = 0;
             for i in 0..coefficient.padded().len() {
-                let term = power * coefficient.padded()[i].abs();
-                self.radii.padded_mut()[i] += term;
-                sum += term;
+                let size = coefficient.padded()[i].abs();
+                self.radii.padded_mut()[i] += power * size;
+                bits |= size.to_bits();
             }
-            if sum != 0.0 {
+            if bits != 0 {
                 self.degree = k as u32;
             }
         }
@@ -291,7 +291,9 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             self.wait = self.patience;
             tail = self.estimate(surface, order, at, evaluations);
         }
-        let is_useful = tail.value <= USEFUL * size && tail.slope + tail.floor < f64::INFINITY;
+        let useful =
+            |tail: &Tail| tail.value <= USEFUL * size && tail.slope + tail.floor < f64::INFINITY;
+        let is_useful = useful(&tail);
         match is_useful {
             true => self.surfaces[surface].patience = 0,
             false => self.postpone(surface),

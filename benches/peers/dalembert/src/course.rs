@@ -52,8 +52,16 @@ impl<S: System> Observer<S> for Impacts<S> {
 }
 
 impl<S: TaylorField + System, E: Effect<S> + Clone> Course<'_, S, E> {
-    /// Runs both integrators at every tolerance and prints the results.
+    /// Runs both integrators at every tolerance and prints the results, or makes a single run.
     pub fn measure(&self, plan: &Plan) {
+        if let Some((integrator, value)) = plan.once {
+            let tolerance = Tolerance::new(value).expect("a tolerance");
+            match integrator {
+                "dalembert-taylor" => self.run(Taylor::new(tolerance), self.until, &mut ()),
+                _ => self.run(Dop853::new(tolerance), self.until, &mut ()),
+            };
+            return;
+        }
         for &value in plan.tolerances {
             let tolerance = Tolerance::new(value).expect("a tolerance");
             self.report(value, "dalembert-taylor", Taylor::new(tolerance), plan);

@@ -1,7 +1,9 @@
 //! Measurements of this project for the comparison with other programs: workloads with known results, one line of JSON
 //! for each integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
 //!
-//! `cargo run --release -- [WORK..] [--repetitions N]`
+//! `cargo run --release -- [WORK..] [--repetitions N] [--once INTEGRATOR TOLERANCE]`
+//!
+//! `--once` makes single runs and prints nothing, for programs that count instructions.
 
 mod chains;
 mod course;
@@ -23,12 +25,15 @@ pub struct Plan {
     ensemble_tolerances: &'static [f64],
     /// Number of timings of each case. The shortest counts, as other programs use the machine.
     repetitions: usize,
+    /// The integrator and the tolerance of a single run.
+    once: Option<(&'static str, f64)>,
 }
 
 const PLAN: Plan = Plan {
     tolerances: &[1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14],
     ensemble_tolerances: &[1e-3, 1e-4, 1e-6, 1e-9, 1e-12],
     repetitions: 5,
+    once: None,
 };
 
 /// Names of the workloads with their measuring functions.
@@ -51,6 +56,15 @@ fn arguments() -> (Plan, Vec<String>) {
         if argument == "--repetitions" {
             let count = arguments.next().and_then(|count| count.parse().ok());
             plan.repetitions = count.expect("`--repetitions` is followed by a number");
+        } else if argument == "--once" {
+            let integrator = match arguments.next().as_deref() {
+                Some("taylor") => "dalembert-taylor",
+                Some("dop853") => "dalembert-dop853",
+                _ => panic!("`--once` is followed by `taylor` or `dop853`"),
+            };
+            let tolerance = arguments.next().and_then(|value| value.parse().ok());
+            let tolerance = tolerance.expect("a tolerance follows the integrator of `--once`");
+            plan.once = Some((integrator, tolerance));
         } else if !argument.starts_with('-') {
             names.push(argument);
         }

@@ -185,7 +185,13 @@ pub fn columns(file: &Bytes) -> Result<(Columns, usize)> {
 pub fn column(file: &Bytes, place: usize) -> Result<Values> {
     let reader = SerializedFileReader::new(file.clone())?;
     let rows = reader.metadata().file_metadata().num_rows() as usize;
-    if place >= reader.metadata().file_metadata().schema_descr().num_columns() {
+    if place
+        >= reader
+            .metadata()
+            .file_metadata()
+            .schema_descr()
+            .num_columns()
+    {
         return Err(ParquetError::General(format!("no column {place}")));
     }
     let (mut integers, mut numbers, mut texts) = (Vec::new(), Vec::new(), Vec::new());
@@ -213,12 +219,16 @@ pub fn column(file: &Bytes, place: usize) -> Result<Values> {
     if found == rows {
         Ok(values)
     } else {
-        Err(ParquetError::General(format!("{found} values in {rows} rows")))
+        Err(ParquetError::General(format!(
+            "{found} values in {rows} rows"
+        )))
     }
 }
 
 fn read_values<T: DataType>(mut column: ColumnReaderImpl<T>, values: &mut Vec<T::T>) -> Result<()> {
-    column.read_records(usize::MAX, None, None, values).map(drop)
+    column
+        .read_records(usize::MAX, None, None, values)
+        .map(drop)
 }
 
 /// The rows of a file as lines of CSV, without a header.
@@ -289,7 +299,10 @@ mod tests {
             panic!("a column of numbers");
         };
         assert_eq!(numbers[1].to_bits(), (-0.0_f64).to_bits());
-        assert_eq!(numbers[GROUP], [0.1, -0.0, f64::NAN, f64::INFINITY, 1e-320][GROUP % 5]);
+        assert_eq!(
+            numbers[GROUP],
+            [0.1, -0.0, f64::NAN, f64::INFINITY, 1e-320][GROUP % 5]
+        );
     }
 
     #[test]

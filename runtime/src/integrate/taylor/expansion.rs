@@ -120,11 +120,23 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         let (mut change, mut slope) =
             (self.coefficients[0].zeroed(), self.coefficients[0].zeroed());
         for coefficient in self.coefficients[1..=order].iter().rev() {
-            let sums = change.as_mut_slice().iter_mut().zip(slope.as_mut_slice());
-            for ((sum, slope), entry) in sums.zip(coefficient.as_slice()) {
-                let next = sum.mul_add(theta, *entry);
-                *slope = slope.mul_add(theta, next);
-                *sum = next;
+            // Entries that are lanes gain nothing from a length that is known at compile time.
+            let (change, slope, entries) = match L::LANES {
+                1 => (
+                    change.padded_mut(),
+                    slope.padded_mut(),
+                    coefficient.padded(),
+                ),
+                _ => (
+                    change.as_mut_slice(),
+                    slope.as_mut_slice(),
+                    coefficient.as_slice(),
+                ),
+            };
+            for i in 0..entries.len() {
+                let next = change[i].mul_add(theta, entries[i]);
+                slope[i] = slope[i].mul_add(theta, next);
+                change[i] = next;
             }
         }
         for sum in change.as_mut_slice() {

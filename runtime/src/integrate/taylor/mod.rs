@@ -345,9 +345,9 @@ impl<F: TaylorField> Taylor<F> {
         let s = theta * (self.ends.length() / self.unit);
         let mut change = self.rates[1].zeroed();
         for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
-            for (i, entry) in coefficient.as_slice().iter().enumerate() {
-                let sum = &mut change.padded_mut()[i];
-                *sum = math::mul_add(*sum, s, *entry);
+            let (sums, entries) = (change.padded_mut(), coefficient.padded());
+            for i in 0..entries.len() {
+                sums[i] = math::mul_add(sums[i], s, entries[i]);
             }
         }
         self.ends.start.advanced(|i| change.padded()[i] * s)

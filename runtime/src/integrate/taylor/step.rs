@@ -169,8 +169,10 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let mut power = 1.0;
         let known = &self.expansion.coefficients[..=self.order];
         for (to, from) in coefficients.iter_mut().zip(known) {
-            let scaled = to.as_mut_slice().iter_mut().zip(from.as_slice());
-            scaled.for_each(|(to, from)| *to = power * from);
+            let (to, from) = (to.padded_mut(), from.padded());
+            for i in 0..from.len() {
+                to[i] = power * from[i];
+            }
             power *= part;
         }
         self.order
