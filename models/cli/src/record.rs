@@ -128,9 +128,13 @@ impl Watch for Recorder<'_> {
         self.progress.at(end);
     }
 
+    fn hears(&mut self, impact: &Impact<()>) -> bool {
+        self.record.tally.count(impact);
+        !self.keeps.is_empty() || self.record.trace.is_some()
+    }
+
     fn impact(&mut self, impact: Impact) {
         self.hand_on(|keep| keep.impact(&impact));
-        self.record.tally.count(&impact);
         if let Some(trace) = &mut self.record.trace {
             trace.corner(impact.t, &impact.before);
             trace.corner(impact.t, &impact.after);

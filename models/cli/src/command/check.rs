@@ -434,6 +434,10 @@ struct Silent;
 
 impl Watch for Silent {
     fn step(&mut self, _piece: &dyn Piece) {}
+    fn hears(&mut self, _impact: &Impact<()>) -> bool {
+        false
+    }
+
     fn impact(&mut self, _impact: Impact) {}
     fn contact(&mut self, _contact: Contact) {}
 }

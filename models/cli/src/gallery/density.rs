@@ -157,6 +157,10 @@ impl Watch for Census {
         }
     }
 
+    fn hears(&mut self, _impact: &Impact<()>) -> bool {
+        false
+    }
+
     fn impact(&mut self, _impact: Impact) {}
 
     fn contact(&mut self, _contact: Contact) {}

@@ -72,6 +72,10 @@ struct Unwatched;
 
 impl Watch for Unwatched {
     fn step(&mut self, _piece: &dyn Piece) {}
+    fn hears(&mut self, _impact: &Impact<()>) -> bool {
+        false
+    }
+
     fn impact(&mut self, _impact: Impact) {}
     fn contact(&mut self, _contact: Contact) {}
 }

@@ -108,6 +108,10 @@ impl Watch for Seen<'_> {
         }
     }
 
+    fn hears(&mut self, _impact: &Impact<()>) -> bool {
+        false
+    }
+
     fn impact(&mut self, _impact: Impact) {}
 
     fn contact(&mut self, _contact: Contact) {}

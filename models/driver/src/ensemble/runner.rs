@@ -349,9 +349,12 @@ impl Watch for Seen<'_> {
         }
     }
 
-    fn impact(&mut self, impact: Impact) {
-        self.tally.count(&impact);
+    fn hears(&mut self, impact: &Impact<()>) -> bool {
+        self.tally.count(impact);
+        false
     }
+
+    fn impact(&mut self, _impact: Impact) {}
 
     fn contact(&mut self, contact: Contact) {
         self.tally.contacts += u64::from(contact.begins);

@@ -88,17 +88,17 @@ pub struct Ending {
     pub warnings: Vec<String>,
 }
 
-/// An impact.
+/// An impact; with `S = ()`, without its states.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Impact {
+pub struct Impact<S = Point> {
     /// The time.
     pub t: f64,
     /// The index of the surface.
     pub surface: usize,
     /// The state before.
-    pub before: Point,
+    pub before: S,
     /// The state after.
-    pub after: Point,
+    pub after: S,
     /// True if another surface was hit at the same time.
     pub simultaneous: bool,
     /// True for a grazing impact: rounding may have decided that it happens.
@@ -134,7 +134,13 @@ pub trait Watch {
     /// Receives a stretch of smooth motion.
     fn step(&mut self, piece: &dyn Piece);
 
-    /// Receives an impact.
+    /// Hears of an impact. True if the watch wants to receive it with its states, which cost time.
+    fn hears(&mut self, impact: &Impact<()>) -> bool {
+        let _ = impact;
+        true
+    }
+
+    /// Receives an impact of which [`Watch::hears`] wanted the states.
     fn impact(&mut self, impact: Impact);
 
     /// Receives the beginning or the end of a contact.
@@ -353,14 +359,24 @@ impl<M: Model, R: Reading<M::State>> Observer<M> for Bridge<'_, M, R> {
         if let Some(balance) = &mut self.balance {
             balance.jump();
         }
-        self.watch.impact(Impact {
+        let impact = Impact {
             t: event.t,
             surface: event.surface,
-            before: self.point(event.t, &event.before),
-            after: self.point(event.t, &event.after),
+            before: (),
+            after: (),
             simultaneous: event.simultaneous,
             graze: event.graze,
-        });
+        };
+        if self.watch.hears(&impact) {
+            self.watch.impact(Impact {
+                t: impact.t,
+                surface: impact.surface,
+                before: self.point(event.t, &event.before),
+                after: self.point(event.t, &event.after),
+                simultaneous: impact.simultaneous,
+                graze: impact.graze,
+            });
+        }
         self.go_on()
     }
 

@@ -17,7 +17,7 @@ pub struct ImpactTally {
 
 impl ImpactTally {
     /// Counts an impact.
-    pub fn count(&mut self, impact: &Impact) {
+    pub fn count<S>(&mut self, impact: &Impact<S>) {
         if self.per_surface.len() <= impact.surface {
             self.per_surface.resize(impact.surface + 1, 0);
         }
