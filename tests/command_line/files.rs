@@ -148,12 +148,19 @@ fn files_that_cannot_be_read_are_named() {
         missing.errors
     );
     let folder = Folder::new("large");
-    let large = folder.file("large.dal", &"// a long comment\n".repeat(1 << 17));
-    assert!(
-        run(&format!("simulate {large}"))
-            .errors
-            .contains("at most 1048576 bytes")
-    );
+    // The limit also cuts a character of two bytes.
+    for long in [
+        "// a long comment\n".repeat(1 << 17),
+        format!("/{}", "ö".repeat(1 << 20)),
+    ] {
+        let large = folder.file("large.dal", &long);
+        let refused = run(&format!("simulate {large}"));
+        assert!(
+            refused.errors.contains("at most 1048576 bytes"),
+            "{}",
+            refused.errors
+        );
+    }
 }
 
 #[test]

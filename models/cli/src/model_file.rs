@@ -1,7 +1,7 @@
 //! Models in files: a model argument may name a file and a model in it.
 
 use std::fs::File;
-use std::io::{Read, Take};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use crate::args::Selection;
@@ -130,21 +130,19 @@ pub(crate) fn text(file: &str, input: &mut dyn Read) -> Result<String, CliError>
         path: PathBuf::from(file),
         source,
     };
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let read = match file {
-        INPUT => input.take(LONGEST + 1).read_to_string(&mut text),
-        _ => File::open(file).and_then(|opened| {
-            let mut opened: Take<File> = opened.take(LONGEST + 1);
-            opened.read_to_string(&mut text)
-        }),
+        INPUT => input.take(LONGEST + 1).read_to_end(&mut bytes),
+        _ => File::open(file).and_then(|opened| opened.take(LONGEST + 1).read_to_end(&mut bytes)),
     };
     read.map_err(failed)?;
-    match text.len() as u64 > LONGEST {
-        true => Err(CliError::value(
+    // NOTE: before the bytes are read as characters, one of which may be cut.
+    if bytes.len() as u64 > LONGEST {
+        return Err(CliError::value(
             "MODEL",
             file,
             format!("a text of at most {LONGEST} bytes"),
-        )),
-        false => Ok(text),
+        ));
     }
+    String::from_utf8(bytes).map_err(|error| failed(io::Error::other(error)))
 }

@@ -55,6 +55,24 @@ fn compare(key: &str, was: &Value, value: &Value, differences: &mut Vec<Differen
                 }
             }
         }
+        ("members", Value::Object(_), Value::Object(_)) => {
+            let [old, new] = [was, value];
+            let drawn = !old["seed"].is_null() && !new["seed"].is_null();
+            let same = |key: &str| old[key] == new[key];
+            match same("varied") && drawn {
+                true => {
+                    for (key, flag) in [("seed", "random"), ("count", "members")] {
+                        if !same(key) {
+                            differences.push(Difference {
+                                change: changed(key, &old[key], &new[key]),
+                                remedy: format!("give --{flag} {}", old[key]),
+                            });
+                        }
+                    }
+                }
+                false => differences.push(flag(key, was, value)),
+            }
+        }
         _ => differences.push(flag(key, was, value)),
     }
 }
@@ -236,6 +254,7 @@ mod tests {
             "every": 0.25, "discard": 0.0,
         });
         let drawn = json!({ "count": 8, "varied": [{ "name": "x", "mean": 0.5, "deviation": 0.1 }], "seed": 7 });
+        let other = json!({ "count": 9, "varied": [{ "name": "x", "mean": 0.5, "deviation": 0.1 }], "seed": 8 });
         let grid = json!({ "count": 3, "varied": [{ "name": "x", "ends": [0.0, 1.0], "count": 3 }], "seed": null });
         let cases = [
             (
@@ -252,6 +271,11 @@ mod tests {
                 json!({ "until": 6.0, "max_step": null }),
                 json!({ "until": 7.0, "max_step": 0.5 }),
                 "`until` was 6.0 and is 7.0, `max_step` was absent and is 0.5; give --until 6.0, leave out --max-step",
+            ),
+            (
+                json!({ "members": drawn }),
+                json!({ "members": other }),
+                "`seed` was 7 and is 8, `count` was 8 and is 9; give --random 7, give --members 8",
             ),
             (
                 json!({ "members": drawn }),
