@@ -47,7 +47,7 @@ def memory():
 def bucket():
     """The address of an empty bucket, and the settings with which a server of this machine is asked for it."""
     pytest.importorskip("obstore", reason=MISSING.format("obstore"))
-    server = pytest.importorskip("moto.server", reason=MISSING.format("moto[server]")).ThreadedMotoServer(port=0, verbose=False)
+    server = pytest.importorskip("moto.server", reason=MISSING.format("moto")).ThreadedMotoServer(port=0, verbose=False)
     server.start()
     host, port = server.get_host_and_port()
     import boto3
