@@ -4,7 +4,7 @@ use dalembert_driver::{AnyModel, Contact, Impact, Origin, Piece, Settings, Watch
 
 use super::paths::Stretch;
 use super::quantity::Quantity;
-use super::trace::{Source, Trace};
+use super::trace::{Mark, Source, Trace};
 use crate::error::CliError;
 
 /// The quantities along a run, in stretches between its impacts.
@@ -20,7 +20,18 @@ pub fn curve(
     let mut camera = Camera(Trace::of(Source::Quantities(quantities.to_vec())));
     let ending = model.simulate(origin, settings, &mut camera);
     ending.map_err(|refusal| CliError::refused(model, &refusal))?;
-    Ok(camera.0.stretches(|mark| mark.values.clone()))
+    let is_impact = |left: &Mark, right: &Mark| left.corner && right.corner && left.t == right.t;
+    let marks = camera.0.points();
+    let stretches = marks.chunk_by(|left, right| !is_impact(left, right));
+    let is_whole = |mark: &&Mark| mark.values.iter().all(|value| value.is_finite());
+    let whole = |stretch: &[Mark]| {
+        stretch
+            .iter()
+            .filter(is_whole)
+            .map(|it| it.values.clone())
+            .collect()
+    };
+    Ok(stretches.map(whole).collect())
 }
 
 /// Keeps the curve of a run.

@@ -116,12 +116,11 @@ impl Trace {
     }
 
     /// The curve with the points `at`, in stretches between jumps and points at which a component is NaN.
-    pub fn stretches<P: AsRef<[f64]> + Clone>(&self, at: impl Fn(&Mark) -> P) -> Vec<Vec<P>> {
+    pub fn stretches(&self, at: impl Fn(&Mark) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
         let mut stretches = Vec::new();
         for marks in self.points.chunk_by(|left, right| !left.jumps_to(right)) {
-            let points: Vec<P> = marks.iter().map(&at).collect();
-            let is_cut = |point: &P| !point.as_ref().iter().all(|value| value.is_finite());
-            let pieces = points.split(is_cut);
+            let points: Vec<[f64; 2]> = marks.iter().map(&at).collect();
+            let pieces = points.split(|point| !point.iter().all(|value| value.is_finite()));
             stretches.extend(pieces.filter(|piece| !piece.is_empty()).map(<[_]>::to_vec));
         }
         stretches
