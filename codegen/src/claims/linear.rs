@@ -32,10 +32,13 @@ pub(super) fn solve<A: Arithmetic>(
         }
         determinant = jets.mul(&determinant, &matrix[step][step]);
         let inverse = jets.inverse(&matrix[step][step])?;
-        let scaled =
-            |row: &[Series<A>]| row.iter().map(|entry| jets.mul(&inverse, entry)).collect();
-        let pivot: Vec<Series<A>> = scaled(&matrix[step]);
-        let pivot_right: Vec<Series<A>> = scaled(&right[step]);
+        let scaled = |mut row: Vec<Series<A>>| {
+            row.iter_mut()
+                .for_each(|entry| jets.multiply(entry, &inverse));
+            row
+        };
+        let pivot = scaled(std::mem::take(&mut matrix[step]));
+        let pivot_right = scaled(std::mem::take(&mut right[step]));
         for row in 0..matrix.len() {
             if row == step || matrix[row][step].is_empty() {
                 continue;
@@ -82,7 +85,7 @@ fn subtract<A: Arithmetic>(
 ) {
     for (entry, other) in row.iter_mut().zip(other) {
         if !other.is_empty() {
-            *entry = jets.sub(entry, &jets.mul(factor, other));
+            jets.subtract_product(entry, factor, other);
         }
     }
 }

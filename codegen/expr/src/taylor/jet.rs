@@ -120,6 +120,42 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         self.trim(sum)
     }
 
+    /// Subtracts `a b`.
+    pub fn subtract_product(&self, from: &mut Series<A>, a: &[A::Scalar], b: &[A::Scalar]) {
+        let (a, b) = if a.len() > b.len() { (b, a) } else { (a, b) };
+        let &[factor] = a else {
+            *from = self.sub(from, &self.mul(a, b));
+            return;
+        };
+        let field = self.field;
+        let b = &b[..b.len().min(self.limit())];
+        from.truncate(self.limit());
+        if from.len() < b.len() {
+            from.resize(b.len(), field.integer(0));
+        }
+        let mut i = 0;
+        while i < b.len() {
+            from[i] = field.sub(from[i], field.mul(factor, b[i]));
+            i += 1;
+        }
+        self.cut(from);
+    }
+
+    /// Multiplies by `factor`.
+    pub fn multiply(&self, series: &mut Series<A>, factor: &[A::Scalar]) {
+        let &[factor] = factor else {
+            *series = self.mul(series, factor);
+            return;
+        };
+        series.truncate(self.limit());
+        let mut i = 0;
+        while i < series.len() {
+            series[i] = self.field.mul(factor, series[i]);
+            i += 1;
+        }
+        self.cut(series);
+    }
+
     /// `factor a`
     pub fn scale(&self, factor: A::Scalar, a: &[A::Scalar]) -> Series<A> {
         self.add_multiple(&[], factor, a)
@@ -202,10 +238,15 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
     }
 
     fn trim(&self, mut a: Series<A>) -> Series<A> {
+        self.cut(&mut a);
+        a
+    }
+
+    /// Removes zeros at the end.
+    fn cut(&self, a: &mut Series<A>) {
         while a.last().is_some_and(|last| self.field.is_zero(*last)) {
             a.pop();
         }
-        a
     }
 
     /// `d a / d x_v`, correct up to the order below.
