@@ -342,7 +342,9 @@ fn failed(error: impl std::error::Error) -> PyErr {
 #[pyfunction]
 pub fn column<'py>(py: Python<'py>, part: &[u8], place: usize) -> PyResult<Bound<'py, PyAny>> {
     let part = part.to_vec().into();
-    let values = py.detach(|| parquet::column(&part, place)).map_err(failed)?;
+    let values = py
+        .detach(|| parquet::column(&part, place))
+        .map_err(failed)?;
     Ok(match values {
         parquet::Values::Integers(values) => values.into_pyarray(py).into_any(),
         parquet::Values::Numbers(values) => values.into_pyarray(py).into_any(),
