@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,20 @@ Sleigh {
     claims { density: exact; }
 }
 """
+
+
+class Interrupted(ThreadPoolExecutor):
+    """A thread. The fourth call that is submitted is interrupted, as by Ctrl-C."""
+
+    def __init__(self):
+        super().__init__(1)
+        self.calls = 0
+
+    def submit(self, function, *arguments):
+        self.calls += 1
+        if self.calls == 4:
+            raise KeyboardInterrupt
+        return super().submit(function, *arguments)
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from conftest import BALL
+from conftest import BALL, Interrupted
 
 import dalembert
 from dalembert import EnsembleError, Normal, RequestError, _sweep, _units
@@ -297,18 +297,9 @@ def test_an_executor_that_broke_and_cannot_be_replaced_says_what_to_give():
 
 
 def test_an_interruption_keeps_what_is_done(whole, tmp_path):
-    class Interrupted(ThreadPoolExecutor):
-        calls = 0
-
-        def submit(self, function, *arguments):
-            Interrupted.calls += 1
-            if Interrupted.calls == 4:
-                raise KeyboardInterrupt
-            return super().submit(function, *arguments)
-
     arguments = {"directory": tmp_path / "kept", **SMALL, **DENSITY}
     with pytest.raises(KeyboardInterrupt):
-        drops(executor=lambda: Interrupted(1), **arguments)
+        drops(executor=lambda: Interrupted(), **arguments)
     # A part whose last file is missing was interrupted.
     parts = sorted((tmp_path / "kept").glob("part-*.json"))
     if parts:

@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from conftest import Interrupted
 
 import dalembert
 from dalembert import EnsembleError, RequestError, _parts, _storage
@@ -83,17 +84,8 @@ def test_a_bucket_of_s3_is_a_directory(bucket, monkeypatch, tmp_path):
 
 
 def test_an_interrupted_ensemble_in_a_store_goes_on(memory, tmp_path):
-    class Interrupted(dalembert._sweep.ThreadPoolExecutor):
-        calls = 0
-
-        def submit(self, function, *arguments):
-            Interrupted.calls += 1
-            if Interrupted.calls == 4:
-                raise KeyboardInterrupt
-            return super().submit(function, *arguments)
-
     with pytest.raises(KeyboardInterrupt):
-        drops(directory=memory, executor=lambda: Interrupted(1))
+        drops(directory=memory, executor=lambda: Interrupted())
     store = _storage.storage(memory)
     kept = {name: store.read(name) for name in store.names()}
     assert "summary.json" not in kept and _storage.LOCK not in kept
