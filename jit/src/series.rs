@@ -29,7 +29,6 @@ pub(crate) struct Series {
     pub(crate) components: usize,
     /// Indices of the coefficients that are kept.
     pub(crate) histories: BTreeMap<History, usize>,
-    pub(crate) is_large: bool,
     /// Number of values that are known at order 0.
     known: usize,
 }
@@ -112,7 +111,6 @@ impl Series {
                 .enumerate()
                 .map(|(place, history)| (history, place))
                 .collect(),
-            is_large: jet.is_large(),
             known: known.len(),
         }
     }
@@ -279,9 +277,11 @@ impl<'a, L: Numbers> Course<'a, L> {
                 let [a, b] = pair(operands);
                 a.turned(b)
             }
-            Term::Middle(a, b) => self.middle(self.kept(*a), self.kept(*b)),
-            Term::Half(a) => self.half(self.kept(History::plain(*a))),
-            Term::Short(a, b, degree) => self.short(self.kept(*a), self.kept(*b), *degree),
+            Term::Middle(a, b) => jet::shared_middle(self.kept(*a), self.kept(*b), k),
+            Term::Half(a) => jet::half(self.kept(History::plain(*a)), k),
+            Term::Short(a, b, degree) => {
+                jet::shared_short(self.kept(*a), self.kept(*b), k, *degree)
+            }
             Term::Steady(a, b) => {
                 let [a, b] = [a, b].map(|value| self.kept(History::plain(*value)));
                 a[1] * b[k - 1]
@@ -291,56 +291,5 @@ impl<'a, L: Numbers> Course<'a, L> {
 
     fn kept(&self, history: History) -> &[L; LENGTH] {
         &self.kept[self.series.histories[&history]]
-    }
-
-    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums
-    // side by side.
-    fn middle(&self, a: &[L; LENGTH], b: &[L; LENGTH]) -> L {
-        let k = self.k;
-        if self.series.is_large {
-            return jet::shared_middle(a, b, k);
-        }
-        if k < 2 {
-            return L::ZERO;
-        }
-        let mut sum = L::ZERO;
-        for j in 2..k.max(3) - 1 {
-            sum = a[j].mul_add(b[k - j], sum);
-        }
-        sum = a[1].mul_add(b[k - 1], sum);
-        match k > 2 {
-            true => a[k - 1].mul_add(b[1], sum),
-            false => sum,
-        }
-    }
-
-    fn half(&self, a: &[L; LENGTH]) -> L {
-        let k = self.k;
-        if self.series.is_large {
-            return jet::half(a, k);
-        }
-        let mut sum = match k >= 2 && k.is_multiple_of(2) {
-            true => L::of(0.5) * a[k / 2] * a[k / 2],
-            false => L::ZERO,
-        };
-        if k > 2 {
-            for j in (2..=(k - 1) / 2).rev() {
-                sum = a[j].mul_add(a[k - j], sum);
-            }
-            sum = a[1].mul_add(a[k - 1], sum);
-        }
-        sum
-    }
-
-    fn short(&self, a: &[L; LENGTH], b: &[L; LENGTH], degree: usize) -> L {
-        let k = self.k;
-        if self.series.is_large {
-            return jet::shared_short(a, b, k, degree);
-        }
-        let mut sum = a[1] * b[k - 1];
-        for j in 2..=degree.min(k) {
-            sum = sum + a[j] * b[k - j];
-        }
-        sum
     }
 }

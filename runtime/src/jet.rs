@@ -129,57 +129,50 @@ pub fn short<L: Numbers, const P: usize>(
     sum
 }
 
-/// `sum a_j b_(k-j)` for `j` in `1..k`.
-///
-/// Four partial sums are computed side by side, which shortens the chain of dependent additions.
-#[inline(always)]
-pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
-    let k = k.clamp(1, LENGTH - 1);
-    let (a, b) = (&a[1..k], &b[1..k]);
-    let mut sums = [L::ZERO; 4];
-    let mut left = a.chunks_exact(4);
-    let mut right = b.rchunks_exact(4);
-    for (x, y) in (&mut left).zip(&mut right) {
-        for i in 0..4 {
-            sums[i] = sums[i] + x[i] * y[3 - i];
-        }
-    }
-    let mut rest = L::ZERO;
-    for (x, y) in left.remainder().iter().zip(right.remainder().iter().rev()) {
-        rest = rest + *x * *y;
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-}
-
-/// Same sum as [`middle`], not inlined, for functions with too many sums to inline each.
+/// `sum a_j b_(k-j)` for `j` in `1..k`, in the order of additions of [`middles`].
+// NOTE: not inlined, for functions with too many sums to inline each.
 #[inline(never)]
 pub fn shared_middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
-    middle(a, b, k)
+    let k = k.clamp(1, LENGTH - 1);
+    let mut sum = L::ZERO;
+    if k < 2 {
+        return sum;
+    }
+    let between = 2..k.max(3) - 1;
+    for (x, y) in a[between.clone()].iter().zip(b[between].iter().rev()) {
+        sum = x.mul_add(*y, sum);
+    }
+    sum = a[1].mul_add(b[k - 1], sum);
+    match k > 2 {
+        true => a[k - 1].mul_add(b[1], sum),
+        false => sum,
+    }
 }
 
-/// Half of `sum a_j a_(k-j)` for `j` in `1..k`: each product once.
-#[inline(always)]
+/// Half of `sum a_j a_(k-j)` for `j` in `1..k`: each product once, in the order of additions of [`halves`].
+#[inline]
 pub fn half<L: Numbers>(a: &[L; LENGTH], k: usize) -> L {
     let k = k.clamp(1, LENGTH - 1);
-    let (mut even, mut odd) = (L::ZERO, L::ZERO);
-    let pairs = (k - 1) / 2;
-    let (left, right) = (&a[1..=pairs], &a[k - pairs..k]);
-    for (x, y) in left.iter().zip(right.iter().rev()) {
-        (even, odd) = (odd, even + *x * *y);
-    }
-    let centre = if k.is_multiple_of(2) {
-        L::of(0.5) * a[k / 2] * a[k / 2]
-    } else {
-        L::ZERO
+    let mut sum = match k.is_multiple_of(2) {
+        true => L::of(0.5) * a[k / 2] * a[k / 2],
+        false => L::ZERO,
     };
-    even + odd + centre
+    if k > 2 {
+        let pairs = (k - 1) / 2;
+        let (left, right) = (&a[2..=pairs.max(1)], &a[k - pairs..k - 1]);
+        for (x, y) in left.iter().rev().zip(right) {
+            sum = x.mul_add(*y, sum);
+        }
+        sum = a[1].mul_add(a[k - 1], sum);
+    }
+    sum
 }
 
-/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`.
+/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, in the order of additions of [`short`].
 #[inline(always)]
 pub fn shared_short<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize, degree: usize) -> L {
-    let mut sum = L::ZERO;
-    for j in 1..=degree {
+    let mut sum = a[1] * b[k - 1];
+    for j in 2..=degree {
         if j <= k {
             sum = sum + a[j] * b[k - j];
         }
@@ -205,7 +198,6 @@ mod tests {
             let sum = |x: &[f64], y: &[f64], from: usize, to: usize| -> f64 {
                 (from..to).map(|j| x[j] * y[k - j]).sum()
             };
-            assert_eq!(middle(&a, &b, k), sum(&a, &b, 1, k));
             assert_eq!(shared_middle(&a, &b, k), sum(&a, &b, 1, k));
             assert_eq!(2.0 * half(&a, k), sum(&a, &a, 1, k));
             assert_eq!(shared_short(&a, &b, k, 3), sum(&a, &b, 1, (k + 1).min(4)));

@@ -456,12 +456,6 @@ impl Assembly {
                 }
                 self.call(address);
             }
-            Instruction::CallSeries(address, [a, b]) => {
-                self.point(0, a);
-                self.point(1, b);
-                dynasm!(self.ops ; .arch aarch64 ; mov x2, x24);
-                self.call(address);
-            }
             Instruction::Guard(from, bound) => {
                 let bound = self.register(bound, SCRATCH);
                 // NOTE: a comparison with NaN is not "larger". The exit may be out of reach of a conditional branch.

@@ -1,7 +1,5 @@
 //! Functions called from machine code.
 
-use dalembert::jet;
-use dalembert::numbers::LENGTH;
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::math;
 
@@ -13,13 +11,6 @@ pub(super) enum OfNumbers {
     Elementary(Elementary),
     Atan2,
     Power,
-}
-
-/// A sum over coefficients of series, for expansions that are too large for unrolled code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum OfSeries {
-    Half,
-    Middle,
 }
 
 macro_rules! functions_of_one_number {
@@ -66,16 +57,6 @@ impl OfNumbers {
     }
 }
 
-impl OfSeries {
-    /// Address of the function.
-    pub(super) fn address(self) -> usize {
-        match self {
-            Self::Half => half as *const () as usize,
-            Self::Middle => middle as *const () as usize,
-        }
-    }
-}
-
 /// Address of [`sine_and_cosine`].
 pub(super) fn address_of_sine_and_cosine() -> usize {
     sine_and_cosine as *const () as usize
@@ -86,23 +67,5 @@ convention! {
     fn sine_and_cosine(x: f64, both: *mut [f64; 2]) {
         // SAFETY: the caller passes the address of room for two numbers in its own frame.
         unsafe { *both = [math::sin(x), math::cos(x)] }
-    }
-}
-
-convention! {
-    /// Half of a sum over one series. The caller passes the series twice.
-    fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
-        // SAFETY: each series of a large expansion is contiguous and has `LENGTH` numbers.
-        jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))
-    }
-}
-
-convention! {
-    /// A sum over two series.
-    fn middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
-        let k = usize::try_from(k).unwrap_or(0);
-        // SAFETY: each series of a large expansion is contiguous and has `LENGTH` numbers.
-        let (a, b) = unsafe { (&*a, &*b) };
-        jet::shared_middle(a, b, k)
     }
 }

@@ -1,6 +1,6 @@
 //! Memory layout of an expansion: places of the coefficients, and groups of sums that are computed together.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use dalembert::numbers::LENGTH;
 use dalembert_codegen::program::Value as Place;
@@ -18,13 +18,20 @@ pub(super) const WEIGHT: usize = 1;
 pub(super) const UNIT: usize = 2;
 const FIXED: usize = 3;
 
+/// Number of doubles in a line of the cache.
+const LINE: usize = 8;
+/// Distance between rows, in numbers, at whose multiples a series of many orders exceeds the lines of the cache that its rows
+/// share.
+const CROWDED: usize = 256;
+
 /// Places of coefficients in the room.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Place of the order-0 coefficient of each history that is read one coefficient at a time. In a large expansion
-    /// these are all histories.
+    /// Place of the order-0 coefficient of each history that is read one coefficient at a time.
     pub(super) alone: BTreeMap<History, usize>,
     pub(super) groups: Vec<Group>,
+    /// Frame slots of the sums.
+    results: BTreeMap<Sum, usize>,
     /// Distance between consecutive orders, in numbers.
     pub(super) stride: usize,
     /// Length of the frame, in numbers.
@@ -43,7 +50,7 @@ pub(super) struct Group {
     pub(super) results: usize,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sum {
     Half(Place),
     Middle(History, History),
@@ -64,21 +71,8 @@ impl Sum {
 
 impl Layout {
     pub(super) fn of(series: &Series) -> Self {
-        if series.is_large {
-            return Self {
-                alone: series
-                    .histories
-                    .iter()
-                    .map(|(history, place)| (*history, place * LENGTH))
-                    .collect(),
-                groups: Vec::new(),
-                stride: 1,
-                frame: FIXED,
-                room: series.histories.len() * LENGTH,
-            };
-        }
         let mut alone = BTreeMap::new();
-        let mut sums: Vec<Sum> = Vec::new();
+        let mut sums = BTreeSet::new();
         for (_, step) in &series.steps {
             if let Step::Term(term) = step {
                 collect(term, &mut sums, &mut alone);
@@ -87,6 +81,7 @@ impl Layout {
         let mut width = alone.len().next_multiple_of(LANES);
         let mut frame = FIXED;
         let mut groups = Vec::new();
+        let mut results = BTreeMap::new();
         for is_half in [true, false] {
             let kind: Vec<Sum> = sums
                 .iter()
@@ -96,6 +91,7 @@ impl Layout {
             for sums in kind.chunks(LANES * SIDE_BY_SIDE) {
                 let count = sums.len().next_multiple_of(LANES);
                 let second = if is_half { width } else { width + count };
+                results.extend(sums.iter().copied().zip(frame..));
                 groups.push(Group {
                     sums: sums.to_vec(),
                     places: [width, second],
@@ -105,9 +101,14 @@ impl Layout {
                 frame += count;
             }
         }
+        // Rows at distances that are multiples of a large power of two compete for the same lines of the cache.
+        if width.is_multiple_of(CROWDED) {
+            width += LINE;
+        }
         Self {
             alone,
             groups,
+            results,
             stride: width,
             frame,
             room: width * LENGTH,
@@ -115,25 +116,24 @@ impl Layout {
     }
 
     /// Frame slot of a sum.
-    pub(super) fn result(&self, sum: Sum) -> Option<usize> {
-        self.groups.iter().find_map(|group| {
-            let place = group.sums.iter().position(|known| *known == sum)?;
-            Some(group.results + place)
-        })
+    pub(super) fn result(&self, sum: Sum) -> usize {
+        self.results[&sum]
     }
 }
 
 /// Collects the sums of a term, and the histories that it reads one coefficient at a time.
-fn collect(term: &Term, sums: &mut Vec<Sum>, alone: &mut BTreeMap<History, usize>) {
+fn collect(term: &Term, sums: &mut BTreeSet<Sum>, alone: &mut BTreeMap<History, usize>) {
     let mut keep = |history: History| {
         let place = alone.len();
         alone.entry(history).or_insert(place);
     };
     term.walk(&mut |term| match term {
-        Term::Middle(a, b) if !sums.contains(&Sum::Middle(*a, *b)) => {
-            sums.push(Sum::Middle(*a, *b));
+        Term::Middle(a, b) => {
+            sums.insert(Sum::Middle(*a, *b));
         }
-        Term::Half(a) if !sums.contains(&Sum::Half(*a)) => sums.push(Sum::Half(*a)),
+        Term::Half(a) => {
+            sums.insert(Sum::Half(*a));
+        }
         Term::Short(a, b, _) => {
             keep(*a);
             keep(*b);

@@ -42,8 +42,6 @@ pub(super) enum Instruction {
     AddFrom(Register, i32, [Place; 2]),
     /// Calls the function at an address, with arguments in the first registers and this place.
     Call(usize, Option<Place>),
-    /// Calls the function at an address, with these places and the order.
-    CallSeries(usize, [Place; 2]),
     Guard(Register, Operand),
 }
 
@@ -58,12 +56,7 @@ pub(super) struct Allocated {
 impl Allocated {
     pub(super) fn has_calls(&self) -> bool {
         let mut instructions = self.instructions.iter();
-        instructions.any(|instruction| {
-            matches!(
-                instruction,
-                Instruction::Call(..) | Instruction::CallSeries(..)
-            )
-        })
+        instructions.any(|instruction| matches!(instruction, Instruction::Call(..)))
     }
 }
 
@@ -176,7 +169,7 @@ impl Allocation {
                 self.instructions
                     .push(Instruction::AddFrom(to, *order, *factors));
             }
-            Operation::Call(..) | Operation::SineAndCosine(..) | Operation::CallSeries(..) => {
+            Operation::Call(..) | Operation::SineAndCosine(..) => {
                 self.call(value, operation);
             }
             Operation::Store(a, place) => {
@@ -213,12 +206,6 @@ impl Allocation {
                 let address = helpers::address_of_sine_and_cosine();
                 self.instructions
                     .push(Instruction::Call(address, Some(*place)));
-            }
-            Operation::CallSeries(function, places) => {
-                self.keep_no_register();
-                self.instructions
-                    .push(Instruction::CallSeries(function.address(), *places));
-                self.hold(value, 0);
             }
             _ => unreachable!("only calls come here"),
         }

@@ -1,9 +1,8 @@
 //! Series as two pieces of straight-line code: the code before the loop over the orders, and the body of the loop.
 //!
-//! Consecutive orders of the kept coefficients have a constant distance in memory. Unless the expansion is large, the
-//! kept coefficients of one order are contiguous: first those that are read one at a time, then the factors of sums.
-//! The sums of an order are computed in SIMD lanes, before everything else of that order. In a large expansion each
-//! series is contiguous, and sums are function calls.
+//! The kept coefficients of one order are contiguous: first those that are read one at a time, then the factors of
+//! sums. Consecutive orders have a constant distance in memory. The sums of an order are computed in SIMD lanes, before
+//! everything else of that order.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +11,6 @@ use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
 use super::assembly::LANES;
-use super::helpers::OfSeries;
 use super::layout::{Group, Layout, Sum, UNIT, WEIGHT};
 use super::registers::{self, Allocated};
 use super::straight::{self, Base, Binary, Operation, Straight, Unary, Value, bytes};
@@ -294,16 +292,7 @@ impl<'a> Body<'a> {
     }
 
     fn sum(&mut self, sum: Sum) -> Value {
-        if let Some(place) = self.layout.result(sum) {
-            return self.straight.load(frame(place));
-        }
-        let factors = sum.factors().map(|history| self.layout.alone[&history]);
-        let places = factors.map(|place| straight::Place::of(KEPT, place));
-        let function = match sum.is_half() {
-            true => OfSeries::Half,
-            false => OfSeries::Middle,
-        };
-        self.straight.push(Operation::CallSeries(function, places))
+        self.straight.load(frame(self.layout.result(sum)))
     }
 
     /// The places of `a_j` and `b_(k-j)`.
@@ -320,11 +309,6 @@ impl<'a> Body<'a> {
         let [a, b] = self.factors(histories, 1);
         let [a, b] = [a, b].map(|place| self.straight.load(place));
         let mut sum = self.straight.mul(a, b);
-        if self.series.is_large {
-            // The first addition is that of `jet::shared_short`.
-            let zero = self.straight.number(0.0);
-            sum = self.straight.add(zero, sum);
-        }
         for j in 2..=degree {
             let factors = self.factors(histories, j);
             let order = i32::try_from(j).unwrap_or(i32::MAX);

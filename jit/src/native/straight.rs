@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::helpers::{OfNumbers, OfSeries};
+use super::helpers::OfNumbers;
 
 /// A value: the index of its operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,8 +100,6 @@ pub(super) enum Operation {
     Call(OfNumbers, Value, Option<Value>),
     /// Writes sine and cosine of a number to a place of the frame.
     SineAndCosine(Value, Place),
-    /// A call of a function of series and the current order.
-    CallSeries(OfSeries, [Place; 2]),
     Store(Value, Place),
     /// Writes values to consecutive places, and zeros to the rest of a vector.
     StoreVector(Vec<Value>, Place),
@@ -113,7 +111,7 @@ impl Operation {
     /// Calls `see` with every value that the operation reads.
     pub(super) fn read(&self, mut see: impl FnMut(Value)) {
         match self {
-            Self::Argument | Self::Number(_) | Self::Load(_) | Self::CallSeries(..) => {}
+            Self::Argument | Self::Number(_) | Self::Load(_) => {}
             Self::Unary(_, a)
             | Self::AtFirst(a)
             | Self::AddFrom { sum: a, .. }

@@ -377,14 +377,6 @@ impl Assembly {
                 }
                 self.call(address);
             }
-            Instruction::CallSeries(address, places) => {
-                for (register, place) in [RDI, RSI].into_iter().zip(places) {
-                    let (base, offset) = self.address(place);
-                    dynasm!(self.ops ; .arch x64 ; lea Rq(register), [Rq(base) + offset]);
-                }
-                dynasm!(self.ops ; .arch x64 ; mov Rq(RDX), Rq(ORDER));
-                self.call(address);
-            }
             Instruction::Guard(from, bound) => self.guard(from, bound),
         }
     }
