@@ -3,6 +3,7 @@
 use core::fmt;
 
 use dalembert_numbers::description::Assumption;
+use dalembert_numbers::tables::Mode;
 
 /// A quantity that the equations of motion need is undefined at this state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +61,33 @@ pub enum Fault {
         /// surface.
         component: usize,
     },
+}
+
+impl Fault {
+    /// Replaces indices of a mode (coordinate, surface, constraint) by those of the model.
+    pub(crate) fn of_mode(self, mode: &Mode) -> Self {
+        let of_model = |places: &[usize], index: usize| places.get(index).copied().unwrap_or(index);
+        match self {
+            Self::MetricNotPositive { pivot, value } => Self::MetricNotPositive {
+                pivot: of_model(&mode.coordinates, pivot),
+                value,
+            },
+            Self::SingularSurface { surface } => Self::SingularSurface {
+                surface: of_model(&mode.surfaces, surface),
+            },
+            Self::SingularConstraint {
+                constraint,
+                condition,
+            } => Self::SingularConstraint {
+                constraint: of_model(&mode.constraints, constraint),
+                condition,
+            },
+            Self::ProjectionFailed { constraint } => Self::ProjectionFailed {
+                constraint: of_model(&mode.constraints, constraint),
+            },
+            fault => fault,
+        }
+    }
 }
 
 impl fmt::Display for Fault {

@@ -263,28 +263,9 @@ impl<'s, S: Declared> Part<'s, S> {
     /// Replaces indices of the part (coordinate, surface, constraint) in a fault by those of the model.
     #[inline(always)]
     pub(crate) fn fault(&self, fault: Fault) -> Fault {
-        let Some(mode) = self.mode() else {
-            return fault;
-        };
-        match fault {
-            Fault::MetricNotPositive { pivot, value } => Fault::MetricNotPositive {
-                pivot: mode.coordinates.get(pivot).copied().unwrap_or(pivot),
-                value,
-            },
-            Fault::SingularSurface { surface } => Fault::SingularSurface {
-                surface: mode.surfaces.get(surface).copied().unwrap_or(surface),
-            },
-            Fault::SingularConstraint {
-                constraint,
-                condition,
-            } => Fault::SingularConstraint {
-                constraint: self.constraint(constraint),
-                condition,
-            },
-            Fault::ProjectionFailed { constraint } => Fault::ProjectionFailed {
-                constraint: self.constraint(constraint),
-            },
-            fault => fault,
+        match self.mode() {
+            Some(mode) => fault.of_mode(mode),
+            None => fault,
         }
     }
 

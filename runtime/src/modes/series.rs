@@ -109,7 +109,8 @@ pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
         lanes.picked(t, &modes),
         &state,
         &mut own_firsts,
-    )?;
+    )
+    .map_err(|fault| fault.of_mode(mode))?;
     let (rates, rest) = own_firsts.as_slice()[..known].split_at(dimensions.state);
     let (gaps, rest) = rest.split_at(own_gaps(mode, lengths));
     let mut put = |place: usize, value: L| {
