@@ -11,7 +11,7 @@ use dalembert_driver::ensemble::row::{Columns, Field, Kind};
 use dalembert_driver::ensemble::runner::{Common, Done, Runner, Shared};
 use dalembert_driver::ensemble::{Members, Quantity, Tally, Values, is_reached, pilot};
 use dalembert_driver::words::Advice;
-use dalembert_driver::{AnyModel, Beginning, Integrator, OffConstraint, Settings};
+use dalembert_driver::{AnyModel, Beginning, OffConstraint, Settings};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -249,7 +249,7 @@ impl NativeEnsemble {
             sums: vec![ExactSum::default(); numbers],
             counts: self.density.as_ref().map(Counts::new),
         };
-        let is_abreast = self.settings.integrator == Integrator::Taylor;
+        let is_abreast = runner.is_abreast();
         let (begun, mut looked) = (Instant::now(), Instant::now());
         let mut next = members.start;
         while next < members.end

@@ -14,7 +14,7 @@ use super::row::{Field, Row};
 use super::values::Quantity;
 use crate::beginning::{Beginning, Component};
 use crate::integrator::Integrator;
-use crate::model::{AnyModel, OffConstraint, Origin, Point, Together};
+use crate::model::{AnyModel, Code, OffConstraint, Origin, Point, Together};
 use crate::outcome::{self, Fact};
 use crate::refusal::Refusal;
 use crate::run::{Contact, Ending, Impact, ImpactTally, Piece, Settings, Watch};
@@ -96,11 +96,16 @@ impl<'a> Runner<'a> {
         self.model.as_ref()
     }
 
-    /// Runs members, in SIMD lanes if the integrator supports it. Every row is the same as from a single run. If a run
-    /// panics, all members are run one by one.
+    /// True if [`Runner::run`] runs members in SIMD lanes: by power series that are compiled. Machine code for a model
+    /// that is loaded from its text has no lanes; its interpreter has, but takes several times as long.
+    pub fn is_abreast(&self) -> bool {
+        self.shared.settings.integrator == Integrator::Taylor && self.model.code() != Code::Loaded
+    }
+
+    /// Runs members, in SIMD lanes if that is faster. Every row is the same as from a single run. If a run panics, all
+    /// members are run one by one.
     pub fn run(&mut self, members: Range<u64>) -> Vec<Done> {
-        let is_taylor = self.shared.settings.integrator == Integrator::Taylor;
-        if is_taylor && members.end - members.start > 1 {
+        if self.is_abreast() && members.end - members.start > 1 {
             let abreast = || self.abreast(members.clone());
             if let Ok(done) = catch_unwind(AssertUnwindSafe(abreast)) {
                 return done;
