@@ -351,7 +351,7 @@ class Model(Swept):
         times: Sequence[float] | np.ndarray | None = None,
         samples: int = 1000,
         tol: float = 1e-10,
-        integrator: str = "dop853",
+        integrator: str = "auto",
         step: float | None = None,
         max_step: float | None = None,
         steps: int | None = None,
@@ -393,8 +393,9 @@ class Model(Swept):
             Without `times`, the number of equally spaced times from 0 to the end, both included.
         tol : float, default 1e-10
             Relative error allowed per step, from 1e-15 to 0.1.
-        integrator : {"dop853", "dopri5", "taylor", "rk4", "gauss4", "gauss6", "dla2", "dla4"}
-            The integrator. The last five have a fixed step.
+        integrator : {"auto", "dop853", "dopri5", "taylor", "rk4", "gauss4", "gauss6", "dla2", "dla4"}
+            The integrator. "auto" takes "taylor" or "dop853", whichever needs less work, by counted operations of the model at
+            this tolerance. The last five have a fixed step.
         step : float, optional
             The step of an integrator with a fixed step. Default: a step that suits `tol`.
         max_step : float, optional

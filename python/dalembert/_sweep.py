@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: Arguments of :meth:`Model.simulate` that all members share, with their defaults.
 COURSE: dict[str, Any] = {
     "until": None, "impacts": None, "state": None, "q": None, "qdot": None, "p": None, "off_constraint": "error", "tol": 1e-10,
-    "integrator": "dop853", "step": None, "max_step": None, "steps": None, "law": None, "form": None, "projection": None,
+    "integrator": "auto", "step": None, "max_step": None, "steps": None, "law": None, "form": None, "projection": None,
     "rest": "stop", "penetration": "stop", "corner": "stop", "split": "first", "inputs": None, "mode": None,
 }
 #: Arguments of a run that ensembles do without.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
+use dalembert_driver::course::IntegratorChoice;
 use dalembert_driver::{
     AnyModel, Beginning, Component, Form, Integrator, OffConstraint, Origin, Rates, Settings,
     course, names,
@@ -145,12 +146,13 @@ impl Request<'_> {
             .transpose()?;
         let needs_global = policy == OffConstraint::Keep || self.projection.is_some();
         let form = Form::choose(model.description(), wanted, needs_global);
+        let form = form.map_err(|reason| refused(format!("form: {reason}")))?;
         let until = course::horizon(model, self.until, self.impacts).ok_or_else(|| {
             refused("the model declares no usable `until`; give an end with until= or impacts=")
         })?;
         Ok(Settings {
-            form: form.map_err(|reason| refused(format!("form: {reason}")))?,
-            integrator,
+            form,
+            integrator: self.settled(integrator, model, form)?,
             tol: self.tol,
             step: self.step,
             max_step: self.max_step,
@@ -163,8 +165,23 @@ impl Request<'_> {
         })
     }
 
+    /// The integrator of the run.
+    fn settled(
+        &self,
+        wanted: IntegratorChoice,
+        model: &dyn AnyModel,
+        form: Form,
+    ) -> PyResult<Integrator> {
+        // Series need inputs that are constant during a step.
+        if self.control.is_some() && wanted == IntegratorChoice::Automatic {
+            return Ok(Integrator::Dop853);
+        }
+        let integrator = wanted.settle(model, form, self.tol);
+        integrator.map_err(|error| refused(format!("tol: {error}")))
+    }
+
     /// Refuses values out of range, and arguments that do not go together.
-    fn check(&self, model: &dyn AnyModel, integrator: Integrator) -> PyResult<()> {
+    fn check(&self, model: &dyn AnyModel, integrator: IntegratorChoice) -> PyResult<()> {
         if !(1e-15..=0.1).contains(&self.tol) {
             let tol = self.tol;
             return Err(refused(format!(
@@ -309,10 +326,9 @@ fn choice<T: Copy>(place: &'static str, given: &str, values: &[(&'static str, T)
     Ok(values[index.map_err(refused)?].1)
 }
 
-fn integrators() -> Vec<(&'static str, Integrator)> {
-    let every = Integrator::every().iter();
-    every
-        .map(|integrator| (integrator.name(), *integrator))
+fn integrators() -> Vec<(&'static str, IntegratorChoice)> {
+    IntegratorChoice::every()
+        .map(|choice| (choice.name(), choice))
         .collect()
 }
 

@@ -28,6 +28,7 @@ use clap::builder::ValueParser;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
+use dalembert_driver::course::IntegratorChoice;
 use dalembert_driver::{Form, Integrator, OffConstraint};
 
 use crate::input_table::Between;
@@ -420,8 +421,8 @@ pub struct CourseArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub impacts: Option<u64>,
     /// Integrator.
-    #[arg(long, value_parser = choice::integrator(), default_value = Integrator::Dop853.name())]
-    pub integrator: Integrator,
+    #[arg(long, value_parser = choice::integrator_or_auto(), default_value = IntegratorChoice::AUTOMATIC)]
+    pub integrator: IntegratorChoice,
     /// Step of an integrator of fixed step. Default: a step that satisfies --tol at the start, but not so short that the
     /// run takes more than about four million steps. The summary prints it.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
@@ -513,12 +514,17 @@ pub struct AccuracyArgs {
     /// Measure only this integrator. May be repeated.
     #[arg(long, value_parser = choice::integrator())]
     pub integrator: Vec<Integrator>,
-    /// Number of timings of each case. The median is reported.
+    /// Largest number of timings of each case. The median is reported.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 5)]
     pub rounds: u32,
-    /// Largest time of a run in seconds. An integrator that takes longer is not run at smaller tolerances.
-    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive), default_value = "1")]
-    pub patience: f64,
+    /// Time of all measurements in seconds. Once it is used up, a case that has been timed is not timed again. The
+    /// reference and one timing of each case are always made.
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive), default_value = "5")]
+    pub budget: f64,
+    /// Largest time of a run with a fixed step in seconds; five times as long for dop853, dopri5 and taylor. An integrator
+    /// that takes longer is not run at smaller tolerances. Default: a hundredth of --budget.
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub patience: Option<f64>,
     /// Write the measurements as a table. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,

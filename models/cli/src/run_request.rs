@@ -2,8 +2,8 @@
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
-use dalembert_driver::course::{self as choice, FormError};
-use dalembert_driver::{AnyModel, Form, Integrator, OffConstraint, Settings};
+use dalembert_driver::course::{self as choice, FormError, IntegratorChoice};
+use dalembert_driver::{AnyModel, Form, OffConstraint, Settings};
 
 use std::path::{Path, PathBuf};
 
@@ -85,21 +85,23 @@ pub fn course_to(
     })
 }
 
-/// The settings of a run by this integrator at this tolerance, to the requested time or number of impacts.
+/// The settings of a run by an integrator at this tolerance, to the requested time or number of impacts.
 pub fn settings(
     model: &dyn AnyModel,
     args: &RunArgs,
     impacts: Option<u64>,
-    (integrator, tol): (Integrator, f64),
+    (integrator, tol): (IntegratorChoice, f64),
 ) -> Result<Settings, CliError> {
     if impacts.is_some() && model.description().surfaces.is_empty() {
         return Err(CliError::Usage(
             "--impacts: the model has no impact surfaces",
         ));
     }
+    let form = form(model.description(), args)?;
+    let integrator = integrator.settle(model, form, tol);
     Ok(Settings {
-        form: form(model.description(), args)?,
-        integrator,
+        form,
+        integrator: integrator.map_err(|error| CliError::refused(model, &error.into()))?,
         tol,
         step: None,
         max_step: None,

@@ -1,15 +1,69 @@
-//! Defaults for values that the request of a run leaves open: the form of the equations, the end time, the laws of
-//! surfaces.
+//! Defaults for values that the request of a run leaves open: the integrator, the form of the equations, the end time,
+//! the laws of surfaces.
 
 use dalembert::describe::Description;
+use dalembert::integrate::ToleranceError;
 use dalembert::law::Law;
 use thiserror::Error;
 
-use crate::integrator::Form;
+use crate::integrator::{Form, Integrator};
 use crate::model::AnyModel;
 
 /// End time of a run to a number of impacts, unless the model's declared `until` is later.
 const IMPACT_HORIZON: f64 = 3600.0;
+
+/// The integrator that a request asks for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum IntegratorChoice {
+    /// The integrator with the least predicted work for the model and the tolerance ([`Integrator::automatic`]).
+    #[default]
+    Automatic,
+    /// This one.
+    Given(Integrator),
+}
+
+impl IntegratorChoice {
+    /// The name of [`Self::Automatic`] on the command line and in files.
+    pub const AUTOMATIC: &str = "auto";
+
+    /// All choices.
+    pub fn every() -> impl Iterator<Item = Self> {
+        let integrators = Integrator::every().iter();
+        core::iter::once(Self::Automatic).chain(integrators.map(|one| Self::Given(*one)))
+    }
+
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Automatic => Self::AUTOMATIC,
+            Self::Given(integrator) => integrator.name(),
+        }
+    }
+
+    /// True if the integrator controls its step size by the tolerance.
+    pub const fn is_adaptive(self) -> bool {
+        match self {
+            Self::Automatic => true,
+            Self::Given(integrator) => integrator.is_adaptive(),
+        }
+    }
+
+    /// The integrator for runs of a model in this form at this tolerance.
+    ///
+    /// # Errors
+    /// [`ToleranceError`] for a tolerance out of range.
+    pub fn settle(
+        self,
+        model: &dyn AnyModel,
+        form: Form,
+        tol: f64,
+    ) -> Result<Integrator, ToleranceError> {
+        match self {
+            Self::Automatic => Integrator::automatic(tol, model.work(form)),
+            Self::Given(integrator) => Ok(integrator),
+        }
+    }
+}
 
 /// Reasons why a form cannot be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]

@@ -2,8 +2,9 @@
 
 use dalembert::integrate::{
     ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
-    MidpointPrinciple, Scheme, TAYLOR,
+    MidpointPrinciple, Scheme, TAYLOR, Tolerance, ToleranceError, taylor_to_dop853,
 };
+use dalembert::jet::Work;
 
 /// Integrators of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,6 +69,22 @@ impl Integrator {
             Self::Dla4 => Some(ComposedPrinciple::ORDER),
             Self::Taylor => None,
         }
+    }
+
+    /// The integrator with the least predicted work for this tolerance: [`Taylor`](Self::Taylor) or
+    /// [`Dop853`](Self::Dop853). `work` is that of the model in the form of the run ([`AnyModel::work`](crate::AnyModel::work)). The
+    /// prediction counts operations ([`taylor_to_dop853`]), so that the choice is the same on all machines, and for all
+    /// states and parameters of a model. The other integrators never take the least time at a given error.
+    ///
+    /// # Errors
+    /// [`ToleranceError`] for a tolerance out of range.
+    pub fn automatic(tol: f64, work: Option<Work>) -> Result<Self, ToleranceError> {
+        let tolerance = Tolerance::new(tol)?;
+        let ratio = work.map(|work| taylor_to_dop853(tolerance, work));
+        Ok(match ratio.is_some_and(|ratio| ratio < 1.0) {
+            true => Self::Taylor,
+            false => Self::Dop853,
+        })
     }
 
     /// True if it controls its step size by the tolerance.

@@ -1,6 +1,7 @@
 //! Object-safe traits of a model with an erased type.
 
 use dalembert::describe::{Description, Instance, Report};
+use dalembert::jet::Work;
 use dalembert::law::Law;
 use dalembert::{Fault, OrbitError, ParameterError, StateError, StateVector};
 
@@ -10,6 +11,7 @@ use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
 use crate::control::{Controlled, Task, Unsought};
 use crate::dynamic::{Landing, Leg, Unlanded};
+use crate::integrator::Form;
 use crate::linearisation::{Linearisation, Place, Unlinear};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
@@ -124,6 +126,8 @@ pub trait AnyModel: Runs {
     fn parameter(&self, index: usize) -> f64;
     /// Sets a parameter. Its value is checked when a state is made.
     fn set_parameter(&mut self, index: usize, value: f64);
+    /// The work of expansions in this form; `None` if it is not known.
+    fn work(&self, form: Form) -> Option<Work>;
     /// Sets the mode, by number, of states that are created after this call.
     fn set_mode(&mut self, mode: usize);
     /// The name of the mode in which states are made; `None` if [`mode_alone`](Self::mode_alone) returns `None`.

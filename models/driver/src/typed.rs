@@ -184,6 +184,14 @@ impl<O: Owner> AnyModel for Typed<O> {
         self.owner.set_parameter(index, value);
     }
 
+    fn work(&self, form: Form) -> Option<dalembert::jet::Work> {
+        let model = self.owner.system();
+        match form {
+            Form::Reduced => TaylorField::work(&model),
+            Form::Global => TaylorField::work(&model.global()),
+        }
+    }
+
     fn set_mode(&mut self, mode: usize) {
         self.owner.set_mode(mode);
     }

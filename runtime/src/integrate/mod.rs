@@ -29,6 +29,7 @@ mod stepper;
 mod tableau;
 pub(crate) mod taylor;
 mod tolerance;
+mod work;
 
 pub use chosen::Chosen;
 pub use controller::MaxStepError;
@@ -47,3 +48,4 @@ pub use stepper::{EnergyAt, GapAt, Rebound, Series, StepFailure, Stepper};
 pub(crate) use taylor::lanes;
 pub use taylor::{TAYLOR, Taylor};
 pub use tolerance::{Tolerance, ToleranceError};
+pub use work::{counted_work, taylor_to_dop853};

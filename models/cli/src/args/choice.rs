@@ -1,33 +1,45 @@
 //! Parsers of flags whose values are names of an enumeration of the driver.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use dalembert_driver::course::IntegratorChoice;
 use dalembert_driver::{Form, Integrator, OffConstraint};
 
 /// The integrators.
 pub fn integrator() -> ValueParser {
-    one_of(Integrator::every().iter().map(|&integrator| {
-        let help = match integrator {
-            Integrator::Dop853 => {
-                "Dormand and Prince of order 8(5,3), dense output of order 7"
+    let every = Integrator::every().iter();
+    one_of(every.map(|&integrator| (integrator, integrator.name(), help(integrator))))
+}
+
+/// The integrators, and the automatic choice.
+pub fn integrator_or_auto() -> ValueParser {
+    one_of(IntegratorChoice::every().map(|choice| {
+        let help = match choice {
+            IntegratorChoice::Automatic => {
+                "taylor or dop853, whichever takes less work, by counted operations of the model at this tolerance"
             }
-            Integrator::Dopri5 => "Dormand and Prince of order 5(4), dense output of order 4",
-            Integrator::Taylor => {
-                "Taylor series of an order chosen for the tolerance and the model"
-            }
-            Integrator::Rk4 => "Fixed step: the classical Runge-Kutta method of order 4",
-            Integrator::Gauss4 => {
-                "Fixed step: Gauss collocation of order 4, symplectic without constraints"
-            }
-            Integrator::Gauss6 => {
-                "Fixed step: Gauss collocation of order 6, symplectic without constraints"
-            }
-            Integrator::Dla2 => {
-                "Fixed step: discrete Lagrange-d'Alembert principle of order 2; constraints hold to rounding"
-            }
-            Integrator::Dla4 => "Fixed step: dla2 composed to order 4",
+            IntegratorChoice::Given(integrator) => help(integrator),
         };
-        (integrator, integrator.name(), help)
+        (choice, choice.name(), help)
     }))
+}
+
+fn help(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Dop853 => "Dormand and Prince of order 8(5,3), dense output of order 7",
+        Integrator::Dopri5 => "Dormand and Prince of order 5(4), dense output of order 4",
+        Integrator::Taylor => "Taylor series of an order chosen for the tolerance and the model",
+        Integrator::Rk4 => "Fixed step: the classical Runge-Kutta method of order 4",
+        Integrator::Gauss4 => {
+            "Fixed step: Gauss collocation of order 4, symplectic without constraints"
+        }
+        Integrator::Gauss6 => {
+            "Fixed step: Gauss collocation of order 6, symplectic without constraints"
+        }
+        Integrator::Dla2 => {
+            "Fixed step: discrete Lagrange-d'Alembert principle of order 2; constraints hold to rounding"
+        }
+        Integrator::Dla4 => "Fixed step: dla2 composed to order 4",
+    }
 }
 
 /// The forms of the equations.

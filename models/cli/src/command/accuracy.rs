@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use dalembert_driver::accuracy::{FINEST, NoChoice, Plan, Sample, Study};
+use dalembert_driver::course::IntegratorChoice;
 use dalembert_driver::{AnyModel, Integrator, Origin, Settings};
 
 use crate::args::AccuracyArgs;
@@ -84,7 +85,7 @@ pub fn run(
 
 /// Makes settings and start, and refuses invalid requests before the runs.
 fn prepare(model: &dyn AnyModel, args: &AccuracyArgs) -> Result<(Settings, Origin), CliError> {
-    let finest = (Integrator::Taylor, FINEST[0]);
+    let finest = (IntegratorChoice::Given(Integrator::Taylor), FINEST[0]);
     let settings = run_request::settings(model, &args.run, None, finest)?;
     Ok((settings, initial_state(model, &args.run.state)?))
 }
@@ -123,9 +124,15 @@ fn plan(args: &AccuracyArgs, until: f64) -> Plan {
             false => args.integrator.clone(),
         },
         rounds: args.rounds,
-        patience: Duration::from_secs_f64(args.patience),
+        budget: duration(args.budget),
+        patience: duration(args.patience.unwrap_or(args.budget / 100.0)),
         ..everything
     }
+}
+
+/// A number of seconds; the longest duration if it is too large for one.
+fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
 }
 
 impl Finished<'_> {
@@ -150,6 +157,15 @@ impl Finished<'_> {
     fn picture(&self, args: &AccuracyArgs) -> Result<String, CliError> {
         work::draw(&self.title(), &self.subtitle(), &self.study)
             .map_err(|reason| CliError::picture(&args.plot, reason))
+    }
+
+    /// The integrators that `auto` chooses, by tolerance.
+    fn automatic(&self) -> Vec<(Integrator, f64)> {
+        let work = self.model.work(self.settings.form);
+        let tolerances = Plan::new(self.study.until).tolerances.into_iter();
+        tolerances
+            .filter_map(|tol| Some((Integrator::automatic(tol, work).ok()?, tol)))
+            .collect()
     }
 
     /// The fastest case for the wanted error, if one is wanted.
@@ -184,21 +200,22 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     )?;
     writeln!(
         output,
-        "\n{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>12}",
-        "", "tol", "error", "rates", "steps", "impacts", "us per unit"
+        "\n{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>9} {:>12}",
+        "", "tol", "error", "rates", "steps", "impacts", "work", "us per unit"
     )?;
     let cheapest = study.cheapest();
     for sample in &study.samples {
         let is_cheapest = cheapest.iter().any(|(_, best)| *best == sample);
         writeln!(
             output,
-            "{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>12.3}{}{}",
+            "{:8} {:>6} {:>10} {:>9} {:>9} {:>8} {:>9} {:>12.3}{}{}",
             sample.integrator.name(),
             format!("{:e}", sample.tol),
             format!("{:.1e}", sample.error),
             evaluations(sample),
             sample.counters.accepted,
             sample.counters.impacts,
+            format!("{:.1e}", sample.work),
             sample.microseconds,
             if is_cheapest { "  *" } else { "" },
             if sample.agrees {
@@ -210,7 +227,16 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     }
     writeln!(
         output,
-        "\n*  the fastest case for an error below a power of ten"
+        "\n*  the fastest case for an error below a power of ten; the one with less work if two times differ by less than 5 %"
+    )?;
+    writeln!(
+        output,
+        "work: counted operations in multiplications, without the search for impacts"
+    )?;
+    writeln!(
+        output,
+        "--integrator auto: {}",
+        ranges(&finished.automatic()).join(", ")
     )?;
     for (integrator, reason) in &study.absent {
         writeln!(output, "{}: {reason}", integrator.name())?;
@@ -220,6 +246,19 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
         Some(Ok(best)) => writeln!(output, "\n{}", answer(finished, best)),
         Some(Err(reason)) => writeln!(output, "\n{reason}"),
     }
+}
+
+/// Integrators by tolerance, as ranges of tolerances with the same integrator.
+fn ranges(chosen: &[(Integrator, f64)]) -> Vec<String> {
+    let ranges = chosen.chunk_by(|(a, _), (b, _)| a == b);
+    let told = ranges.map(|range| match *range {
+        [(integrator, loose), .., (_, tight)] => {
+            format!("{} from {loose:e} to {tight:e}", integrator.name())
+        }
+        [(integrator, tol)] => format!("{} at {tol:e}", integrator.name()),
+        [] => String::new(),
+    });
+    told.collect()
 }
 
 /// The recommendation: the fastest case for the wanted error.

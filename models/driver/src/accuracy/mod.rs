@@ -35,8 +35,8 @@ mod verdict;
 
 use std::time::{Duration, Instant};
 
-use dalembert::integrate::Counters;
-use dalembert::{Outcome, Policies, SceneEffects};
+use dalembert::integrate::{Counters, counted_work};
+use dalembert::{Outcome, Policies, SceneEffects, TaylorField};
 use thiserror::Error;
 
 use crate::integrator::{Form, Integrator};
@@ -49,6 +49,13 @@ pub(crate) use verdict::verify;
 
 /// Number of equal intervals between the times at which positions are compared.
 pub const TIMES: u64 = 64;
+
+/// Longest duration of a run that chooses its steps, over that of a run with a fixed step. Steps that are chosen are seldom
+/// slower for the same error, so that other integrators need not be measured as far.
+const ADAPTIVE: u32 = 5;
+
+/// Times whose ratio is below this number are equal: two timings of the same case differ by as much.
+const EQUAL: f64 = 1.05;
 
 /// The tolerances of the two reference runs. Both are below the unit of rounding, so that the runs differ in their steps
 /// only.
@@ -64,27 +71,31 @@ pub struct Plan {
     /// The tolerances, from loose to tight. A fixed-step integrator takes a step that suits the tolerance at the start
     /// of the run.
     pub tolerances: Vec<f64>,
-    /// Number of timings of each case. The cases take turns, so that a slow moment of the machine affects all of them.
+    /// Largest number of timings of each case. The cases take turns, so that a slow moment of the machine affects all of
+    /// them.
     pub rounds: u32,
+    /// Time of all measurements. Once it is used up, a case that has been timed is not timed again.
+    pub budget: Duration,
     /// The least duration of one timing. Shorter runs are repeated.
     pub least: Duration,
-    /// Longest duration of a run. An integrator that exceeds it is not run at tighter tolerances, which take even
-    /// longer.
+    /// Longest duration of a run with a fixed step; five times as long for other integrators. An integrator that exceeds
+    /// it is not run at tighter tolerances, which take even longer.
     pub patience: Duration,
     /// An error that is small enough: an integrator that reaches it is not run at tighter tolerances.
     pub enough: Option<f64>,
 }
 
 impl Plan {
-    /// Every integrator at tolerances of 1e-3 to 1e-15.
+    /// Every integrator at tolerances of 1e-3 to 1e-15, in about five seconds.
     pub fn new(until: f64) -> Self {
         Self {
             until,
             integrators: Integrator::every().to_vec(),
             tolerances: (3..=15).map(power_of_ten).collect(),
             rounds: 5,
+            budget: Duration::from_secs(5),
             least: Duration::from_millis(2),
-            patience: Duration::from_secs(1),
+            patience: Duration::from_millis(50),
             enough: None,
         }
     }
@@ -112,8 +123,10 @@ pub struct Sample {
     pub outcome: Outcome,
     /// The time at its end.
     pub t: f64,
-    /// The work.
+    /// The work, by kind.
     pub counters: Counters,
+    /// The work in multiplications ([`counted_work`]), without the search for impacts; NaN if it is not known for the model.
+    pub work: f64,
     /// Microseconds per unit of time of the model, as the median of several timings.
     pub microseconds: f64,
 }
@@ -162,7 +175,8 @@ pub enum NoChoice {
 }
 
 impl Study {
-    /// The fastest case with an error of at most `wanted` that agrees with the reference.
+    /// The fastest case with an error of at most `wanted` that agrees with the reference. Of cases that are less than 5 %
+    /// slower than the fastest one, it is that with the least counted work.
     ///
     /// # Errors
     /// [`NoChoice::OutOfReach`] if no case reaches the error, or if the reference itself is less accurate;
@@ -175,7 +189,16 @@ impl Study {
             .samples
             .iter()
             .filter(|it| it.agrees && it.error <= wanted);
-        let best = reached.min_by(|a, b| a.microseconds.total_cmp(&b.microseconds));
+        let fastest = reached
+            .clone()
+            .map(|it| it.microseconds)
+            .fold(f64::INFINITY, f64::min);
+        let best = reached
+            .filter(|it| it.microseconds <= EQUAL * fastest)
+            .min_by(|a, b| {
+                let by_time = a.microseconds.total_cmp(&b.microseconds);
+                a.work.total_cmp(&b.work).then(by_time)
+            });
         let agreeing = self.samples.iter().filter(|it| it.agrees);
         let least = agreeing.map(|it| it.error).fold(f64::INFINITY, f64::min);
         let floor = self.floor;
@@ -254,6 +277,7 @@ pub(crate) fn study<M: Model>(
     plan: &Plan,
     tell: &mut dyn FnMut(&str),
 ) -> Result<Study, Refusal> {
+    let begun = Instant::now();
     tell("reference");
     let reference = reference(model, state, base)?;
     let mut cases: Vec<Case> = Vec::new();
@@ -272,7 +296,9 @@ pub(crate) fn study<M: Model>(
     for round in 0..rounds {
         tell(&format!("timing, round {} of {}", round + 1, plan.rounds));
         for case in &mut cases {
-            case.time(model, state)?;
+            if case.times.is_empty() || begun.elapsed() < plan.budget {
+                case.time(model, state)?;
+            }
         }
     }
     Ok(Study {
@@ -312,6 +338,10 @@ impl<'a> Ladder<'a> {
         integrator: Integrator,
         tell: &mut dyn FnMut(&str),
     ) -> Result<(), String> {
+        let patience = match integrator.is_adaptive() {
+            true => ADAPTIVE * self.plan.patience,
+            false => self.plan.patience,
+        };
         for &tol in &self.plan.tolerances {
             tell(&format!("{} at {tol:e}", integrator.name()));
             let settings = Settings {
@@ -327,7 +357,9 @@ impl<'a> Ladder<'a> {
             if track.step.is_some() && track.step == last {
                 continue;
             }
-            let case = case(track, settings, self.reference, once, self.plan);
+            let work = TaylorField::work(model);
+            let work = work.map_or(f64::NAN, |work| counted_work(&track.counters, work));
+            let case = case(track, settings, self.reference, (once, work), self.plan);
             let Sample { agrees, error, .. } = case.sample;
             self.cases.push(case);
             if self
@@ -337,7 +369,7 @@ impl<'a> Ladder<'a> {
             {
                 break;
             }
-            if once > self.plan.patience {
+            if once > patience {
                 return Err(format!(
                     "tolerances below {tol:e} are left out, because a run takes more than {once:.0?}"
                 ));
@@ -351,7 +383,7 @@ fn case(
     track: Track,
     settings: Settings,
     reference: &Reference,
-    once: Duration,
+    (once, work): (Duration, f64),
     plan: &Plan,
 ) -> Case {
     let repeats = (plan.least.as_secs_f64() / once.as_secs_f64().max(1e-9)).ceil();
@@ -365,6 +397,7 @@ fn case(
             outcome: track.outcome,
             t: track.t,
             counters: track.counters,
+            work,
             microseconds: f64::NAN,
         },
         settings,

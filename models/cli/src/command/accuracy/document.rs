@@ -32,6 +32,13 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         "cheapest",
         cheapest.iter().map(|(decade, best)| chosen(*decade, best)),
     )?;
+    let automatic = finished.automatic();
+    document.rows(
+        "automatic",
+        automatic.iter().map(
+            |(integrator, tol)| json!({ "tol": number(*tol), "integrator": integrator.name() }),
+        ),
+    )?;
     let absent = study.absent.iter();
     document.rows(
         "absent",
@@ -64,6 +71,7 @@ fn case(sample: &Sample) -> Value {
         "coefficients": counters.coefficients,
         "accepted": counters.accepted,
         "rejected": counters.rejected,
+        "work": number(sample.work),
         "microseconds_per_unit": number(sample.microseconds),
     })
 }

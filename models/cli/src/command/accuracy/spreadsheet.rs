@@ -6,7 +6,7 @@ use dalembert_driver::accuracy::{Sample, Study};
 
 use crate::table::write_rows;
 
-const HEAD: [&str; 13] = [
+const HEAD: [&str; 14] = [
     "integrator",
     "tol",
     "step",
@@ -19,6 +19,7 @@ const HEAD: [&str; 13] = [
     "coefficients",
     "accepted",
     "rejected",
+    "work",
     "microseconds_per_unit",
 ];
 
@@ -34,7 +35,7 @@ pub fn write(output: &mut dyn Write, study: &Study) -> io::Result<()> {
     })
 }
 
-fn row(sample: &Sample) -> [String; 13] {
+fn row(sample: &Sample) -> [String; 14] {
     let counters = &sample.counters;
     [
         sample.integrator.name().to_owned(),
@@ -49,6 +50,7 @@ fn row(sample: &Sample) -> [String; 13] {
         counters.coefficients.to_string(),
         counters.accepted.to_string(),
         counters.rejected.to_string(),
+        sample.work.to_string(),
         sample.microseconds.to_string(),
     ]
 }
