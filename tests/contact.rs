@@ -285,3 +285,39 @@ fn a_surface_pressed_from_the_start_holds_the_motion_at_once_whatever_the_step()
         }
     }
 }
+
+/// A weight on the ground, pulled up by a force that grows.
+static WEIGHT: Text = Text::new(
+    "Weight {
+        coordinates { x; }
+        parameters { k > 0 = 5; g > 0 = 9.81; }
+        lagrangian = dot(x)^2/2 - g*x;
+        forces { pull: k*t*d(x); }
+        impacts { ground: x >= 0 => newton(0); }
+    }",
+);
+
+/// Without the ground, the weight falls, turns at `t = 3.9` and returns at 5.9. A series reaches any of these times in one step,
+/// so that rate or gap are positive at its end.
+#[test]
+fn a_motion_that_returns_within_the_step_is_held_from_the_start() {
+    let weight = WEIGHT.model();
+    let lift = 9.81 / 5.0;
+    for &integrator in Integrator::every() {
+        for until in [3.0, 4.0, 5.5, 6.5, 8.0] {
+            let course = Course::new(&weight, &[0.0], &[0.0], until).tol(1e-12);
+            let mut holds = Holds(Vec::new());
+            let run = course.resting().observed(integrator, &mut holds);
+            let case = format!("{} until {until}: {:?}", integrator.name(), run.counters);
+            assert_eq!(run.outcome, Outcome::Done, "{case}");
+            let [begin, end] = &holds.0[..] else {
+                panic!("{case}: {:?}", holds.0)
+            };
+            assert_eq!((begin.begins, begin.t), (true, 0.0), "{case}");
+            assert!((end.t - lift).abs() < 1e-9, "{case}: {}", end.t);
+            let right = 5.0 * (until - lift).powi(3) / 6.0;
+            let x = run.state.as_ref()[0];
+            assert!((x / right - 1.0).abs() < 1e-3, "{case}: {x}, not {right}");
+        }
+    }
+}

@@ -31,6 +31,19 @@ const FLAT: f64 = 64.0;
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
+/// Fraction of a step at which the search for the departure of a touched gap begins. A gap that grows like the square of time
+/// is there about a rounding error of what it is at the end.
+const LEAST_DEPARTURE: f64 = 1.0 / (1 << 26) as f64;
+
+/// The way in which the gap of a touched surface leaves 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Departure {
+    Rises,
+    Sinks,
+    /// It stays within rounding errors.
+    None,
+}
+
 /// The first hit of one surface in a step.
 enum Found {
     Nothing,
@@ -176,7 +189,15 @@ impl<Sys: Impacting> Watch<Sys> {
             if is_active(surface, step, part) {
                 if self.falls_at_start(surface, part, start, step) {
                     let pressed = self.is_pressed(surface, step, glance);
-                    return match pressed {
+                    let departure = match pressed {
+                        true => Departure::Sinks,
+                        false => self.departure(surface, step),
+                    };
+                    if departure == Departure::Rises && after < 1.0 {
+                        start = Start::behind(after, until);
+                        continue;
+                    }
+                    return match departure == Departure::Sinks {
                         true if !is_accelerated(surface, step)?
                             && crosses_at_rest(surface, step, 0.0)? =>
                         {
@@ -344,6 +365,39 @@ impl<Sys: Impacting> Watch<Sys> {
         step.counters.event_evaluations += evaluations;
         let is_falling = |rate: f64| rate * glance.length < -rounding;
         glance.rate(surface).is_some_and(is_falling)
+    }
+
+    /// First change of a touched gap, from the start of the step on, that exceeds its rounding error.
+    ///
+    /// NOTE: at the end of a long step, the rate or the gap may be positive again although the motion went into the
+    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence.
+    fn departure<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Departure {
+        let mut evaluations = 0;
+        let mut departure = Departure::None;
+        let mut octave = LEAST_DEPARTURE;
+        while departure == Departure::None && octave < 1.0 {
+            for part in [1.5 * octave, 2.0 * octave] {
+                let gaps = step.system.gaps(step.time(part), &step.state(part));
+                let gap = gaps.as_slice()[surface];
+                let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+                evaluations += 1;
+                if gap < -2.0 * rounding {
+                    departure = Departure::Sinks;
+                    break;
+                }
+                if gap > FLAT * rounding {
+                    departure = Departure::Rises;
+                    break;
+                }
+            }
+            octave *= 2.0;
+        }
+        step.counters.event_evaluations += evaluations;
+        departure
     }
 
     /// True if the gap is negative at the end of the step by more than its rounding error. A motion along a wall
