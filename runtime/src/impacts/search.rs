@@ -188,24 +188,24 @@ impl<Sys: Impacting> Watch<Sys> {
             step.counters.crossings += 1;
             if is_active(surface, step, part) {
                 if self.falls_at_start(surface, part, start, step) {
-                    let pressed = self.is_pressed(surface, step, glance);
-                    let departure = match pressed {
-                        true => Departure::Sinks,
-                        false => self.departure(surface, step),
-                    };
-                    if departure == Departure::Rises && after < 1.0 {
-                        start = Start::behind(after, until);
-                        continue;
-                    }
-                    return match departure == Departure::Sinks {
-                        true if !is_accelerated(surface, step)?
-                            && crosses_at_rest(surface, step, 0.0)? =>
-                        {
-                            Err(Outcome::TangentialCrossing { surface })
+                    if !self.is_pressed(surface, step, glance) {
+                        match self.departure(surface, step) {
+                            Departure::Sinks
+                                if self.is_sunk(surface, step, glance)
+                                    || is_accelerated(surface, step)? => {}
+                            Departure::Rises if after < 1.0 => {
+                                start = Start::behind(after, until);
+                                continue;
+                            }
+                            _ => return Ok(Found::Nothing),
                         }
-                        true => Err(Outcome::Contact { surface }),
-                        false => Ok(Found::Nothing),
-                    };
+                    }
+                    let crosses =
+                        !is_accelerated(surface, step)? && crosses_at_rest(surface, step, 0.0)?;
+                    return Err(match crosses {
+                        true => Outcome::TangentialCrossing { surface },
+                        false => Outcome::Contact { surface },
+                    });
                 }
                 let places = Bracket {
                     before: part,
@@ -370,7 +370,8 @@ impl<Sys: Impacting> Watch<Sys> {
     /// First change of a touched gap, from the start of the step on, that exceeds its rounding error.
     ///
     /// NOTE: at the end of a long step, the rate or the gap may be positive again although the motion went into the
-    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence.
+    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence. A motion that has
+    /// just been released may sink by the error of the integrator; the second rate tells it from one that is pressed.
     fn departure<Step: Stepper<Sys>>(
         &self,
         surface: usize,
