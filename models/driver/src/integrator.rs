@@ -72,9 +72,9 @@ impl Integrator {
     }
 
     /// The integrator with the least predicted work for this tolerance: [`Taylor`](Self::Taylor) or
-    /// [`Dop853`](Self::Dop853). `work` is that of the model in the form of the run ([`AnyModel::work`](crate::AnyModel::work)). The
-    /// prediction counts operations ([`taylor_to_dop853`]), so that the choice is the same on all machines, and for all
-    /// states and parameters of a model. [`Dopri5`](Self::Dopri5) may be faster at large errors.
+    /// [`Dop853`](Self::Dop853). `work` is that of the model in the form of the run
+    /// ([`AnyModel::work`](crate::AnyModel::work)). The prediction counts operations ([`taylor_to_dop853`]), so that the
+    /// choice is the same on all machines, and for all states and parameters of a model. [`Dopri5`](Self::Dopri5) may be faster at large errors.
     ///
     /// # Errors
     /// [`ToleranceError`] for a tolerance out of range.

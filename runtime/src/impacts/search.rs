@@ -31,8 +31,8 @@ const FLAT: f64 = 64.0;
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
-/// Fraction of a step at which the search for the departure of a touched gap begins. A gap that grows like the square of time
-/// is there about a rounding error of what it is at the end.
+/// Fraction of a step at which the search for the departure of a touched gap begins. A gap that grows like the square of
+/// time is there about a rounding error of what it is at the end.
 const LEAST_DEPARTURE: f64 = 1.0 / (1 << 26) as f64;
 
 /// The way in which the gap of a touched surface leaves 0.
@@ -370,8 +370,8 @@ impl<Sys: Impacting> Watch<Sys> {
     /// First change of a touched gap, from the start of the step on, that exceeds its rounding error.
     ///
     /// NOTE: at the end of a long step, the rate or the gap may be positive again although the motion went into the
-    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence. A motion that has
-    /// just been released may sink by the error of the integrator; the second rate tells it from one that is pressed.
+    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence. A motion that
+    /// has just been released may sink by the error of the integrator; the second rate tells it from one that is pressed.
     fn departure<Step: Stepper<Sys>>(
         &self,
         surface: usize,
