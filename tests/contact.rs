@@ -7,6 +7,7 @@ use dalembert::{
     Run, System, VectorField,
 };
 use dalembert_cli::Integrator;
+use dalembert_cli::suite::Setting;
 use dalembert_stability::course::{Course, vector};
 use dalembert_stability::text::{Model, Text, value};
 use dalembert_tests::numeric::assert_near;
@@ -318,6 +319,146 @@ fn a_motion_that_returns_within_the_step_is_held_from_the_start() {
             let right = 5.0 * (until - lift).powi(3) / 6.0;
             let x = run.state.as_ref()[0];
             assert!((x / right - 1.0).abs() < 1e-3, "{case}: {x}, not {right}");
+        }
+    }
+}
+
+/// A point without weight on the ground, pulled by a force that is a polynomial of time.
+static PULLED: Text = Text::new(
+    "Pulled {
+        coordinates { x; }
+        parameters { a = 0; b = 0; c = 0; }
+        lagrangian = dot(x)^2/2;
+        forces { pull: (a + b*t + c*t^2)*d(x); }
+        impacts { ground: x >= 0 => newton(0); }
+    }",
+);
+
+/// The force begins at 0 and pulls down. Without the ground, the point turns at `t = 3/2` and returns at 2.
+#[test]
+fn a_force_that_grows_from_nothing_holds_from_the_start() {
+    let pulled = PULLED.with([("b", -1.0), ("c", 1.0)]);
+    for &integrator in Integrator::every() {
+        for until in [1.2, 1.7, 2.5, 5.0] {
+            let course = Course::new(&pulled, &[0.0], &[0.0], until).tol(1e-12);
+            let mut holds = Holds(Vec::new());
+            let run = course.step(1e-2).resting().observed(integrator, &mut holds);
+            let case = format!("{} until {until}: {:?}", integrator.name(), run.counters);
+            assert_eq!(run.outcome, Outcome::Done, "{case}");
+            let [begin, end] = &holds.0[..] else {
+                panic!("{case}: {:?}", holds.0)
+            };
+            assert_eq!((begin.begins, begin.t), (true, 0.0), "{case}");
+            assert!((end.t - 1.0).abs() < 1e-6, "{case}: {}", end.t);
+            // The force is 0 at the release, and `tau + tau^2` after it.
+            let tau: f64 = until - 1.0;
+            let right = tau.powi(3) / 6.0 + tau.powi(4) / 12.0;
+            let x = run.state.as_ref()[0];
+            assert!((x / right - 1.0).abs() < 2e-3, "{case}: {x}, not {right}");
+        }
+    }
+}
+
+/// The force pulls up at first: the point leaves the ground, and comes back to it.
+#[test]
+fn a_motion_that_leaves_the_ground_at_rest_hits_it_when_it_returns() {
+    for ([a, b, c], back) in [([1.0, -1.0, 0.0], 3.0), ([0.0, 1.0, -1.0], 2.0)] {
+        let pulled = PULLED.with([("a", a), ("b", b), ("c", c)]);
+        for &integrator in Integrator::every() {
+            let course = Course::new(&pulled, &[0.0], &[0.0], back + 0.5).tol(1e-12);
+            let mut holds = Holds(Vec::new());
+            let run = course.step(1e-2).resting().observed(integrator, &mut holds);
+            let case = format!("{}: {:?}", integrator.name(), run.counters);
+            assert_eq!(run.outcome, Outcome::Done, "{case}");
+            assert_eq!(run.counters.impacts, 1, "{case}");
+            let [begin] = &holds.0[..] else {
+                panic!("{case}: {:?}", holds.0)
+            };
+            assert!((begin.t - back).abs() < 1e-4, "{case}: {}", begin.t);
+        }
+    }
+}
+
+/// A point leaves the ground slowly, and a force that grows brings it back. A long step ends far behind the ground, where
+/// rounding errors are larger than the height of the throw.
+#[test]
+fn a_slow_throw_that_a_growing_force_ends_is_no_crossing() {
+    let pulled = PULLED.with([("b", -1.0)]);
+    for &integrator in Integrator::every() {
+        for speed in [1e-9, 1e-7, 1e-5] {
+            let course = Course::new(&pulled, &[0.0], &[speed], 1.0).tol(1e-12);
+            let end = course.step(1e-2).resting().run(Setting::free(integrator));
+            let case = format!("{}, {speed}: {:?}", integrator.name(), end.counters);
+            assert_eq!(end.outcome, Outcome::Done, "{case}");
+            assert_eq!(end.q, [0.0], "{case}");
+        }
+    }
+}
+
+/// The ground is a level of a function with a constant term. Near the start the gap is smaller than the rounding error of
+/// that term.
+static LEVEL: Text = Text::new(
+    "Level {
+        coordinates { x; }
+        parameters { a = 0; k = 0; }
+        lagrangian = dot(x)^2/2;
+        forces { pull: (a - k*x)*d(x); }
+        impacts { ground: sqrt(1 + x^2 + 2*x) - 1 >= 0 => newton(0); }
+    }",
+);
+
+#[test]
+fn a_motion_leaves_stays_or_is_held_although_rounding_hides_the_gap() {
+    for (a, k, speed) in [
+        (-9.81, 0.0, 0.0),
+        (-9.81, 0.0, 1e-9),
+        (1.5, 0.0, 0.0),
+        (0.0, 1.0, 0.0),
+    ] {
+        let level = LEVEL.with([("a", a), ("k", k)]);
+        for &integrator in Integrator::every() {
+            let course = Course::new(&level, &[0.0], &[speed], 1.0).tol(1e-12);
+            let end = course.step(1e-2).resting().run(Setting::free(integrator));
+            let case = format!(
+                "{}, {a}, {k}, {speed}: {:?}",
+                integrator.name(),
+                end.counters
+            );
+            assert_eq!(end.outcome, Outcome::Done, "{case}");
+            let right = a.max(0.0) / 2.0;
+            assert!((end.q[0] - right).abs() < 1e-9, "{case}: {:?}", end.q);
+        }
+    }
+}
+
+/// A point on top of a ball, in Cartesian coordinates.
+static BALL: Text = Text::new(
+    "Ball {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { ball: x^2 + (y + 1)^2 - 1 >= 0; }
+    }",
+);
+
+#[test]
+fn a_point_on_top_of_a_ball_is_held_until_it_leaves_it() {
+    let ball = BALL.model();
+    for &integrator in Integrator::every() {
+        for (speed, until) in [(0.0, 1.0), (0.5, 2.5)] {
+            let course = Course::new(&ball, &[0.0, 0.0], &[speed, 0.0], until).tol(1e-12);
+            let end = course.step(1e-2).resting().run(Setting::free(integrator));
+            let case = format!("{}, {speed}: {:?}", integrator.name(), end.counters);
+            assert_eq!(end.outcome, Outcome::Done, "{case}");
+            assert_eq!(end.counters.impacts, 0, "{case}");
+            assert_eq!((end.holds[0].begins, end.holds[0].t), (true, 0.0), "{case}");
+            if speed == 0.0 {
+                assert_eq!(end.holds.len(), 1, "{case}");
+                assert_eq!(end.q, [0.0, 0.0], "{case}");
+                continue;
+            }
+            // It leaves where cos(phi) = (2 + v^2)/3.
+            let [x, y] = [end.holds[1].q[0], end.holds[1].q[1]];
+            assert!((y + 1.0 - 0.75).abs() < 1e-6, "{case}: {x}, {y}");
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::events::first::narrowed;
 use crate::forces::{Along, Driven};
 use crate::independence;
 use crate::integrate::controller::least_trial;
-use crate::integrate::{Counters, Dop853, Instant, Rebound, Stepper};
+use crate::integrate::{Chosen, Counters, Dop853, Instant, Rebound, Stepper};
 use crate::narrow;
 use crate::outcome::{Outcome, StartError};
 use crate::record::{Observer, Segment};
@@ -353,10 +353,12 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         };
         let unlimited = Dop853::new(self.stepper.tolerance());
         let limited = unlimited.with_max_step(self.stepper.max_step());
-        let mut stepper = Along {
+        let mut along = Along {
             field: &field,
             stepper: limited.unwrap_or(unlimited),
         };
+        // NOTE: behind a pointer, so that the effects are compiled once for it and all chosen integrators.
+        let mut stepper = Chosen::new(&mut along);
         // The integrator of this part of the run has made no step yet.
         let was_begun = core::mem::replace(&mut self.progress.is_begun, false);
         let mut course = Course {

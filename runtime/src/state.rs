@@ -61,8 +61,8 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The components in order, to be written.
     fn as_mut_slice(&mut self) -> &mut [f64];
 
-    /// All components within the capacity: those in use, then zeros. Their number is known at compile time, which makes
-    /// linear combinations faster. Linear combinations keep the zeros.
+    /// All components within the capacity: those in use, then zeros. Their number is known at compile time. Linear
+    /// combinations keep the zeros ([`StateVector::for_each_place`]).
     #[inline(always)]
     fn padded(&self) -> &[f64] {
         self.as_slice()
@@ -72,6 +72,16 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     #[inline(always)]
     fn padded_mut(&mut self) -> &mut [f64] {
         self.as_mut_slice()
+    }
+
+    /// Calls `at` with the indices of the components, and of the zeros that fill their last block
+    /// ([`StateVector::padded`]). The length of a block is known at compile time, which makes linear combinations faster
+    /// than loops over the components.
+    #[inline(always)]
+    fn for_each_place(&self, mut at: impl FnMut(usize)) {
+        for i in 0..self.padded().len() {
+            at(i);
+        }
     }
 
     /// True if every component is finite.

@@ -1,4 +1,5 @@
-//! Random declarations: generated code agrees with independent computations, and broken declarations are refused.
+//! Random declarations: generated code agrees with independent computations, integrators agree, and broken declarations
+//! are refused.
 //!
 //! The quick tests draw from a fixed seed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` the seed.
 //! After a failure the declaration is shrunk and printed.
@@ -11,6 +12,7 @@ mod emitted;
 mod function;
 mod interpreted;
 mod models;
+mod resting;
 
 use proptest::test_runner::{Config, RngSeed};
 

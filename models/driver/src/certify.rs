@@ -8,20 +8,18 @@ use std::panic::resume_unwind;
 use std::thread;
 
 use dalembert::certified::{CertifiedImpact, CertifiedRun, Lost};
-use dalembert::erased::{self, Erased};
+use dalembert::erased;
 use dalembert::law::Law;
 use dalembert::numbers::{Interval, Numbers, Row};
 use dalembert::{Instance, StateError, TaylorField, Variational, VectorField};
 
 use crate::integrator::Form;
 use crate::model::{OffConstraint, Origin, Rates};
+use crate::owner::Largest;
 use crate::refusal::{Refusal, Uncertified};
 
 /// Stack size in bytes: four times the need of the longest vectors in unoptimised code.
 const STACK: usize = 16 << 20;
-
-/// The system for which certified motion is compiled, with room for every form.
-type System<'f> = Erased<'f, 32>;
 
 /// Request for certified motion from `t = 0` on.
 #[derive(Debug, Clone)]
@@ -120,7 +118,7 @@ impl Subject<'_> {
         observer: &mut dyn FnMut(&Strike),
     ) -> Result<Certified, Refusal> {
         let form = self.form.ok_or(Uncertified::Compiled)?;
-        let mut system = System::of(form).ok_or(Uncertified::Compiled)?;
+        let mut system = Largest::of(form).ok_or(Uncertified::Compiled)?;
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
@@ -141,7 +139,7 @@ impl Subject<'_> {
         }
         let values = TaylorField::parameters(&system);
         let mut parameters =
-            <System<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
+            <Largest<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
         let entries = parameters.as_mut_slice().iter_mut();
         for (entry, value) in entries.zip(values.as_slice()) {
             *entry = Interval::of(*value);
@@ -185,11 +183,11 @@ impl Subject<'_> {
     /// Ranges of the components of the initial states.
     fn start(
         &self,
-        system: &System<'_>,
-        parameters: &<System<'_> as TaylorField>::Parameters<Interval>,
+        system: &Largest<'_>,
+        parameters: &<Largest<'_> as TaylorField>::Parameters<Interval>,
         request: &Certification,
     ) -> Result<Vec<Interval>, Refusal> {
-        type Positions = <System<'static> as Variational>::Configuration<Interval>;
+        type Positions = <Largest<'static> as Variational>::Configuration<Interval>;
         let n = self.origin.q.len();
         let tables = &system.form().tables;
         if !tables.modes.is_empty() {
@@ -241,12 +239,12 @@ fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
 
 /// A system with ranges for its parameters.
 struct Shown<'a> {
-    system: &'a System<'a>,
-    parameters: <System<'a> as TaylorField>::Parameters<Interval>,
+    system: &'a Largest<'a>,
+    parameters: <Largest<'a> as TaylorField>::Parameters<Interval>,
 }
 
 impl Shown<'_> {
-    fn strike(&self, impact: &CertifiedImpact<System<'_>>) -> Strike {
+    fn strike(&self, impact: &CertifiedImpact<Largest<'_>>) -> Strike {
         Strike {
             surface: impact.surface,
             time: impact.time,
@@ -258,7 +256,7 @@ impl Shown<'_> {
     /// Positions and velocities of all states of a box.
     fn ranges(&self, times: Interval, component: impl Fn(usize) -> Interval) -> Ranges {
         let mut state =
-            <System<'_> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
+            <Largest<'_> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = component(i);
         }

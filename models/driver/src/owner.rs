@@ -8,6 +8,9 @@ use dalembert::numbers::Row;
 
 use crate::typed::Model;
 
+/// A system with room for every form that runs. What needs no speed runs on it alone, and is compiled once for all models.
+pub(crate) type Largest<'f> = Erased<'f, 32>;
+
 /// Owner of a model with values for its parameters.
 pub(crate) trait Owner {
     /// The model as a system, which may borrow from its owner.
@@ -16,6 +19,13 @@ pub(crate) trait Owner {
         Self: 'a;
 
     fn system(&self) -> Self::System<'_>;
+
+    /// The model as a system for computations with variations, such as orbits, boundary values and linearisations.
+    type Varied<'a>: Model
+    where
+        Self: 'a;
+
+    fn varied(&self) -> Self::Varied<'_>;
 
     /// The form, if the model has one.
     fn form(&self) -> Option<&erased::Form>;
@@ -39,6 +49,12 @@ impl<M: Model + 'static> Owner for OfType<M> {
     type System<'a> = M;
 
     fn system(&self) -> M {
+        self.0.clone()
+    }
+
+    type Varied<'a> = M;
+
+    fn varied(&self) -> M {
         self.0.clone()
     }
 
@@ -77,6 +93,16 @@ pub(crate) struct OfForm<const C: usize> {
 }
 
 impl<const C: usize> OfForm<C> {
+    /// The system of another capacity, at least `C`.
+    fn with_capacity<const D: usize>(&self) -> Erased<'_, D> {
+        let mut system = Erased::of(&self.form).expect("vectors of at most `C` components");
+        for (index, value) in self.values.iter().enumerate() {
+            system.set_parameter(index, *value);
+        }
+        system.set_mode(self.mode);
+        system
+    }
+
     /// The model with its declared parameter values; `None` if the form has longer vectors.
     pub fn of(form: &Shared<erased::Form>) -> Option<Self> {
         let values = TaylorField::parameters(&Erased::<C>::of(form)?);
@@ -92,12 +118,13 @@ impl<const C: usize> Owner for OfForm<C> {
     type System<'a> = Erased<'a, C>;
 
     fn system(&self) -> Erased<'_, C> {
-        let mut system = Erased::of(&self.form).expect("vectors of at most `C` components");
-        for (index, value) in self.values.iter().enumerate() {
-            system.set_parameter(index, *value);
-        }
-        system.set_mode(self.mode);
-        system
+        self.with_capacity()
+    }
+
+    type Varied<'a> = Largest<'a>;
+
+    fn varied(&self) -> Largest<'_> {
+        self.with_capacity()
     }
 
     fn form(&self) -> Option<&erased::Form> {

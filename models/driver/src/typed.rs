@@ -70,9 +70,7 @@ pub fn of_form(form: Shared<erased::Form>, code: Code) -> Option<Box<dyn AnyMode
         let owner = OfForm::<C>::of(form)?;
         Some(Box::new(Typed { owner, code }))
     }
-    with_room::<4>(&form, code)
-        .or_else(|| with_room::<8>(&form, code))
-        .or_else(|| with_room::<32>(&form, code))
+    with_room::<8>(&form, code).or_else(|| with_room::<32>(&form, code))
 }
 
 /// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and need not
@@ -429,7 +427,7 @@ impl<O: Owner> Runs for Typed<O> {
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Connected, Unjoined>>, Refusal> {
         let joiner = Joiner { boundary, tell };
-        self.owner.system().visit_variational(joiner).transpose()
+        self.owner.varied().visit_variational(joiner).transpose()
     }
 
     fn linearise(
@@ -437,7 +435,7 @@ impl<O: Owner> Runs for Typed<O> {
         origin: &Origin,
         place: &Place,
     ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal> {
-        let model = self.owner.system();
+        let model = self.owner.varied();
         let state = prepare(&model, &model, place.t, origin)?;
         let q = model.position(&state);
         let qdot = model.velocity(place.t, &state).map_err(StateError::from)?;
@@ -453,7 +451,7 @@ impl<O: Owner> Runs for Typed<O> {
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal> {
         let controller = Controller { task, tell };
         self.owner
-            .system()
+            .varied()
             .visit_variational(controller)
             .transpose()
     }
@@ -494,7 +492,7 @@ impl<O: Owner> Typed<O> {
         search: &Search,
         work: W,
     ) -> Result<Option<Result<W::Output, OrbitError>>, Refusal> {
-        let model = self.owner.system();
+        let model = self.owner.varied();
         let (q, qdot) = located(&model, origin)?;
         let visit = Visit {
             search,

@@ -354,8 +354,8 @@ pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
     /// All entries, in order, for writing.
     fn as_mut_slice(&mut self) -> &mut [L];
 
-    /// All entries within the capacity: those in use, then zeros. Their number is known at compile time, which makes
-    /// linear combinations faster. Linear combinations keep the zeros.
+    /// All entries within the capacity: those in use, then zeros. Their number is known at compile time. Linear
+    /// combinations keep the zeros ([`Row::for_each_place`]).
     #[inline(always)]
     fn padded(&self) -> &[L] {
         self.as_slice()
@@ -365,6 +365,14 @@ pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
     #[inline(always)]
     fn padded_mut(&mut self) -> &mut [L] {
         self.as_mut_slice()
+    }
+
+    /// Calls `at` with the indices of the entries, and of those that fill their last block ([`Row::padded`]).
+    #[inline(always)]
+    fn for_each_place(&self, mut at: impl FnMut(usize)) {
+        for i in 0..self.padded().len() {
+            at(i);
+        }
     }
 }
 

@@ -5,6 +5,27 @@ use core::fmt;
 use crate::numbers::{Numbers, Row};
 use crate::state::{Plain, StateVector};
 
+/// Components that are combined together: as many as a SIMD register of 256 bits has.
+const BLOCK: usize = 4;
+
+/// Calls `at` with every index below `count`, rounded up to whole blocks within the capacity `C`.
+///
+/// NOTE: the length of a block is known when this is compiled, so that its components are computed together.
+#[inline(always)]
+fn in_blocks<const C: usize>(count: usize, mut at: impl FnMut(usize)) {
+    for block in 0..C / BLOCK {
+        if block * BLOCK >= count {
+            return;
+        }
+        for i in 0..BLOCK {
+            at(block * BLOCK + i);
+        }
+    }
+    for i in C / BLOCK * BLOCK..C {
+        at(i);
+    }
+}
+
 /// At most `C` values.
 #[derive(Clone, Copy)]
 pub struct Bounded<T, const C: usize> {
@@ -83,6 +104,11 @@ impl<const C: usize> StateVector for Bounded<f64, C> {
     fn padded_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
+
+    #[inline(always)]
+    fn for_each_place(&self, at: impl FnMut(usize)) {
+        in_blocks::<C>(self.count, at);
+    }
 }
 
 impl<L: Numbers, const C: usize> Row<L> for Bounded<L, C> {
@@ -111,6 +137,11 @@ impl<L: Numbers, const C: usize> Row<L> for Bounded<L, C> {
     #[inline(always)]
     fn padded_mut(&mut self) -> &mut [L] {
         &mut self.values
+    }
+
+    #[inline(always)]
+    fn for_each_place(&self, at: impl FnMut(usize)) {
+        in_blocks::<C>(self.count, at);
     }
 }
 

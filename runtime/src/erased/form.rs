@@ -11,7 +11,7 @@ use crate::kernels::{Documentation, KernelTable, Tables};
 use crate::numbers::Numbers;
 
 /// Capacities for which erased systems are compiled.
-pub const CAPACITIES: [usize; 3] = [4, 8, 32];
+pub const CAPACITIES: [usize; 2] = [8, 32];
 
 /// Maximum number of parameters of an erased system, inputs included.
 pub const PARAMETERS: usize = 64;
@@ -89,34 +89,29 @@ impl fmt::Debug for Form {
 }
 
 impl Form {
-    /// The least of [`CAPACITIES`] with room for the vectors, parameters, kernels and series of this form, and for the
-    /// states of the global one; `None` if none has.
+    /// The least of [`CAPACITIES`] in which the form [fits](Form::fits); `None` if it is too large for each.
     pub const fn capacity(&self) -> Option<usize> {
-        let dimensions = &self.tables.value().dimensions;
-        let n = dimensions.coordinates;
-        let lengths = [dimensions.state, 2 * n, dimensions.surfaces];
-        let (mut longest, mut k) = (0, 0);
-        while k < lengths.len() {
-            if lengths[k] > longest {
-                longest = lengths[k];
-            }
-            k += 1;
-        }
         let mut k = 0;
         while k < CAPACITIES.len() {
-            let capacity = CAPACITIES[k];
-            let has_room = longest <= capacity
-                && self.room <= ROWS * capacity
-                && self.firsts <= FIRSTS * capacity;
-            if has_room && dimensions.parameters <= ARGUMENTS * capacity {
-                return match dimensions.parameters <= PARAMETERS {
-                    true => Some(capacity),
-                    false => None,
-                };
+            if self.fits(CAPACITIES[k]) {
+                return Some(CAPACITIES[k]);
             }
             k += 1;
         }
         None
+    }
+
+    /// True if a system of this capacity has room for the vectors, parameters, kernels and series of the form, and for the
+    /// states of the global form.
+    pub const fn fits(&self, capacity: usize) -> bool {
+        let dimensions = &self.tables.value().dimensions;
+        dimensions.state <= capacity
+            && 2 * dimensions.coordinates <= capacity
+            && dimensions.surfaces <= capacity
+            && dimensions.parameters <= ARGUMENTS * capacity
+            && dimensions.parameters <= PARAMETERS
+            && self.room <= ROWS * capacity
+            && self.firsts <= FIRSTS * capacity
     }
 
     /// The global form; the form itself if it is global.

@@ -5,7 +5,7 @@
 //! the same bits. They are compiled once for all models; each kernel costs a call through a pointer.
 //!
 //! Vectors are stored in arrays of fixed capacity with their length: `Erased<8>` runs every model whose vectors have
-//! at most 8 components ([`Form::capacity`]). Nothing is allocated.
+//! at most 8 components ([`Form::fits`]). Nothing is allocated.
 //!
 //! | file | job |
 //! |---|---|

@@ -28,10 +28,10 @@ pub struct Erased<'f, const C: usize> {
 }
 
 impl<'f, const C: usize> Erased<'f, C> {
-    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` if the
-    /// vectors of the form are longer than `C` ([`Form::capacity`]).
+    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` if the form does
+    /// not [fit](Form::fits) into the capacity `C`.
     pub fn of(form: &'f Form) -> Option<Self> {
-        if form.capacity()? > C {
+        if !form.fits(C) {
             return None;
         }
         let mut values = Bounded::all(form.tables.dimensions.parameters, 0.0);

@@ -160,7 +160,7 @@ impl<S: StateVector> Path<S> {
     ) {
         (self.start, self.length) = (step.t_start(), step.length());
         let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
-        for i in 0..sway.padded().len() {
+        sway.for_each_place(|i| {
             let at = |state: &S| state.padded()[i];
             let (first, last) = (self.length * at(first), self.length * at(last));
             let bend = at(end) - at(start) - first;
@@ -170,7 +170,7 @@ impl<S: StateVector> Path<S> {
             coefficients[1].padded_mut()[i] = first;
             coefficients[2].padded_mut()[i] = bend + twist;
             coefficients[3].padded_mut()[i] = -twist;
-        }
+        });
         self.polynomials.order = 3;
         self.polynomials.doubts = [*sway; 2];
         // NOTE: enclosed immediately, because the order is a compile-time constant here.
@@ -186,9 +186,7 @@ impl<S: StateVector> Path<S> {
         for (of, rounding) in [ROUNDING, 2.0 * ROUNDING].into_iter().enumerate() {
             let sum = sums[of].padded();
             let doubts = self.polynomials.doubts[of].padded_mut();
-            for i in 0..sum.len() {
-                doubts[i] += rounding * sum[i];
-            }
+            sums[of].for_each_place(|i| doubts[i] += rounding * sum[i]);
         }
         match self.polynomials.order < 4 {
             true => self.fill_whole::<4>(),
@@ -210,9 +208,7 @@ impl<S: StateVector> Path<S> {
             for k in (first..COUNT - 1).rev() {
                 let above = powers[k + 1];
                 let power = powers[k].padded_mut();
-                for i in 0..power.len() {
-                    power[i] += 0.5 * above.padded()[i];
-                }
+                above.for_each_place(|i| power[i] += 0.5 * above.padded()[i]);
             }
         }
         let Whole {
@@ -222,7 +218,7 @@ impl<S: StateVector> Path<S> {
             bend,
         } = &mut self.whole;
         let last = self.polynomials.order as f64 - 1.0;
-        for i in 0..zeros.padded().len() {
+        zeros.for_each_place(|i| {
             let mut scale = 1.0;
             let (mut beyond, mut steep, mut bent) = (0.0, 0.0, 0.0);
             for (k, power) in powers.iter().enumerate() {
@@ -240,7 +236,7 @@ impl<S: StateVector> Path<S> {
             bend.padded_mut()[i] = 4.0 * bent + last * tails[1].padded()[i];
             error.padded_mut()[i] = beyond + tails[0].padded()[i] + doubts[0].padded()[i];
             slope.padded_mut()[i] = steep + 0.5 * (tails[1].padded()[i] + doubts[1].padded()[i]);
-        }
+        });
     }
 
     /// Taylor model of component `i` on a part of the step.

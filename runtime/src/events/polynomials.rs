@@ -60,11 +60,11 @@ impl<S: StateVector> Polynomials<S> {
             if k == FEW {
                 first = [sizes, slopes];
             }
-            for i in 0..zeros.padded().len() {
+            zeros.for_each_place(|i| {
                 let size = coefficient.padded()[i].abs();
                 sizes.padded_mut()[i] += size;
                 slopes.padded_mut()[i] += k as f64 * size;
-            }
+            });
         }
         self.tails = [zeros; 2];
         if self.order >= FEW {
@@ -73,10 +73,10 @@ impl<S: StateVector> Polynomials<S> {
                 .iter_mut()
                 .zip([sizes, slopes].iter().zip(&first))
             {
-                for i in 0..zeros.padded().len() {
+                zeros.for_each_place(|i| {
                     let all = all.padded()[i];
                     tail.padded_mut()[i] = all - first.padded()[i] + ROUNDING * all;
-                }
+                });
             }
         }
         [sizes, slopes]

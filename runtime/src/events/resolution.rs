@@ -8,6 +8,7 @@
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;
+use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
 /// Relative change of a component in a difference quotient. It is the square root of the roundoff, where one-sided
@@ -32,6 +33,21 @@ pub(crate) fn resolution<Sys: Impacting>(
     let later = system.gaps(t + PART * t, state).as_slice()[surface];
     let sum = sum_of_terms(system, surface, (t, state), here, sizes, evaluations);
     UNITS * (sum + (later - here).abs() / PART)
+}
+
+/// Width of the enclosure of a surface's gap at a state, which covers the rounding errors of its evaluation; 0 if it is
+/// not bounded. Unlike [`resolution`], it includes terms that do not change: the gap `sqrt(1 + x) - 1` near `x = 0`.
+pub(crate) fn evaluation_error<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+) -> f64 {
+    let exact = |value: f64| TaylorModel::exact([value, 0.0, 0.0, 0.0]);
+    let component = |i: usize| exact(state.as_slice()[i]);
+    let range = system.gap_along(surface, exact(t), &component).range();
+    let width = range.hi - range.lo;
+    if width.is_finite() { width } else { 0.0 }
 }
 
 /// `sum_i |dh/dx_i| sizes_i`; `here` is the gap.

@@ -256,17 +256,18 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.degree = 1;
         for (k, (coefficient, power)) in terms.iter().zip(&POWERS[ratio]).enumerate().skip(1) {
             let mut bits = 0;
-            for i in 0..coefficient.padded().len() {
+            coefficient.for_each_place(|i| {
                 let size = coefficient.padded()[i].abs();
                 self.radii.padded_mut()[i] += power * size;
                 bits |= size.to_bits();
-            }
+            });
             if bits != 0 {
                 self.degree = k as u32;
             }
         }
-        let radii = self.radii.padded_mut().iter_mut();
-        radii.for_each(|radius| *radius *= UP);
+        for radius in self.radii.as_mut_slice() {
+            *radius *= UP;
+        }
         self.time_radius = RATIOS[ratio] * path.length() * UP;
     }
 

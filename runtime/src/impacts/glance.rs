@@ -1,7 +1,6 @@
-//! Data for the first test of a step for impacts: gaps and gap rates at its end, and the polynomials of the gaps if the
-//! step is a power series.
+//! Data for the first test of a step for impacts: gaps and gap rates at its end.
 
-use super::series::GapSeries;
+use super::series::LastSeries;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::integrate::Stepper;
@@ -16,8 +15,6 @@ pub(super) struct Glance<G: StateVector> {
     pub(super) gaps: G,
     /// Gap rates at the end, once computed.
     rates: Option<G>,
-    /// Polynomials of the gaps, once computed.
-    series: Option<GapSeries<G>>,
     /// True if the step is a power series.
     has_series: bool,
     /// Length of the step, and the larger of the absolute values of its end times.
@@ -31,20 +28,22 @@ impl<G: StateVector> Glance<G> {
         self.length <= SAME_TIME * self.latest
     }
 
-    /// Returns the gap rates at the end of the step. They are computed in the first call.
+    /// Returns the gap rates at the end of the step. They are computed in the first call, from the polynomials of the gaps
+    /// if the step is a power series.
     #[inline(always)]
     pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
+        series: &mut LastSeries<G>,
         step: &StepView<'_, Sys, Step>,
     ) -> Result<G, Outcome> {
         if let Some(rates) = self.rates {
             return Ok(rates);
         }
-        let length = self.length;
-        let rates = match self
-            .expand(step)
-            .and_then(|series| series.last_rates(length))
-        {
+        let series = match self.has_series {
+            true => series.expand(step, &self.gaps),
+            false => None,
+        };
+        let rates = match series.and_then(|series| series.last_rates(self.length)) {
             Some(rates) => rates,
             None => step.system.gap_rates(step.t_end(), step.end())?,
         };
@@ -52,30 +51,10 @@ impl<G: StateVector> Glance<G> {
         Ok(rates)
     }
 
-    /// Returns the polynomials of the gaps, which are computed in the first call; `None` if the step is not a power
-    /// series.
-    #[inline(always)]
-    pub(super) fn expand<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
-        &mut self,
-        step: &StepView<'_, Sys, Step>,
-    ) -> Option<&mut GapSeries<G>> {
-        if self.has_series && self.series.is_none() {
-            self.series = GapSeries::of(step, &self.gaps);
-        }
-        self.series.as_mut()
-    }
-
     /// True if the step is a power series.
     #[inline(always)]
     pub(super) fn has_series(&self) -> bool {
         self.has_series
-    }
-
-    /// True if the polynomial of the gap is known and has an error bound.
-    #[inline(always)]
-    pub(super) fn is_certain(&self, surface: usize) -> bool {
-        self.series()
-            .is_some_and(|series| series.is_certain(surface))
     }
 
     /// The rates at the end; `None` before [`Glance::look_closer`].
@@ -88,12 +67,6 @@ impl<G: StateVector> Glance<G> {
     #[inline(always)]
     pub(super) fn rate(&self, surface: usize) -> Option<f64> {
         self.rates().map(|rates| rates.as_slice()[surface])
-    }
-
-    /// The polynomials of the gaps, once computed.
-    #[inline(always)]
-    pub(super) fn series(&self) -> Option<&GapSeries<G>> {
-        self.series.as_ref()
     }
 
     /// True if the surface is approached and its gap reaches 0 at the end of the step, within the rounding of times.
@@ -139,7 +112,6 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(Glance {
         gaps: finite(step.system, gaps)?,
         rates: None,
-        series: None,
         has_series,
         length,
         latest: t.abs().max(step.t_start().abs()),

@@ -566,6 +566,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             Ok(hit) if self.resting.is_none() => Ok(hit),
             Ok(hit) => self.resting.look(hit, step),
             Err(Outcome::Contact { surface }) => self.press(surface, step),
+            // At rest on the surface: a force that grows from 0 presses.
+            Err(Outcome::TangentialCrossing { surface }) if self.may_rest(surface) => {
+                self.press(surface, step)
+            }
             Err(outcome) => Err(outcome),
         }
     }

@@ -3,6 +3,7 @@
 mod accumulation;
 mod coincident;
 mod corner;
+mod departure;
 mod fall;
 mod glance;
 mod growth;

@@ -1,10 +1,11 @@
 //! Event location along a step that the first tests left undecided. Finds falls of gaps through zero, selects the
 //! impacts among them, and decides if motion that starts on a surface leaves it or presses into it.
 
+use super::departure::{Departure, error_at_start};
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
 use super::place::Place;
-use super::tangency::{crosses_at_rest, is_accelerated};
+use super::tangency::crosses_at_rest;
 use super::told::Told;
 use super::watch::{Graze, Watch};
 use crate::contract::Impacting;
@@ -26,23 +27,10 @@ const FALLS: u32 = 1024;
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
 /// Largest gap, in units of its rounding, at which a surface that the motion does not leave is still touched.
-const FLAT: f64 = 64.0;
+pub(super) const FLAT: f64 = 64.0;
 
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
-
-/// Fraction of a step at which the search for the departure of a touched gap begins. A gap that grows like the square of
-/// time is there about a rounding error of what it is at the end.
-const LEAST_DEPARTURE: f64 = 1.0 / (1 << 26) as f64;
-
-/// The way in which the gap of a touched surface leaves 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Departure {
-    Rises,
-    Sinks,
-    /// It stays within rounding errors.
-    None,
-}
 
 /// The first hit of one surface in a step.
 enum Found {
@@ -58,7 +46,7 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
+        glance: &Glance<Sys::Gaps>,
         last_rates: &Sys::Gaps,
         (first, mut whole): (usize, Option<TaylorModel>),
     ) -> Result<(), Outcome> {
@@ -138,11 +126,10 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
+        glance: &Glance<Sys::Gaps>,
         whole: Option<TaylorModel>,
     ) -> Result<Found, Outcome> {
         self.certify(surface, step, glance);
-        let glance = &*glance;
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
@@ -154,13 +141,14 @@ impl<Sys: Impacting> Watch<Sys> {
             slope,
             until,
         };
-        let known = Known {
-            series: glance.series(),
-            ends: [gap, glance.gaps.as_slice()[surface]],
-            whole,
-        };
+        let ends = [gap, glance.gaps.as_slice()[surface]];
         let mut tangential = None;
         for _ in 0..FALLS {
+            let known = Known {
+                series: self.series.known(),
+                ends,
+                whole,
+            };
             let found = first_fall(surface, step, &mut self.path, &self.sizes, known, start);
             let (part, after, nearest) = match found {
                 Search::Clear => {
@@ -171,7 +159,26 @@ impl<Sys: Impacting> Watch<Sys> {
                         _ => Ok(Found::Nothing),
                     };
                 }
-                Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
+                Search::Unfinished(part) => {
+                    let is_touched = start.slope.is_some() && start.above;
+                    let departure = match is_touched && is_active(surface, step, 0.0) {
+                        true => self.unclear_departure(surface, step, glance)?,
+                        false => None,
+                    };
+                    match departure {
+                        Some(Departure::Pressed(outcome)) => return Err(outcome),
+                        Some(Departure::None) => return Ok(Found::Nothing),
+                        Some(Departure::Rises(from)) if from < 1.0 => {
+                            start = Start {
+                                from,
+                                slope: None,
+                                ..start
+                            };
+                            continue;
+                        }
+                        _ => return Ok(Found::Unfinished(part)),
+                    }
+                }
                 // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate
                 // leaves the touched surface, whatever the rounding error of the gap.
                 Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
@@ -188,24 +195,14 @@ impl<Sys: Impacting> Watch<Sys> {
             step.counters.crossings += 1;
             if is_active(surface, step, part) {
                 if self.falls_at_start(surface, part, start, step) {
-                    if !self.is_pressed(surface, step, glance) {
-                        match self.departure(surface, step) {
-                            Departure::Sinks
-                                if self.is_sunk(surface, step, glance)
-                                    || is_accelerated(surface, step)? => {}
-                            Departure::Rises if after < 1.0 => {
-                                start = Start::behind(after, until);
-                                continue;
-                            }
-                            _ => return Ok(Found::Nothing),
+                    match self.departure(surface, step, glance)? {
+                        Departure::Pressed(outcome) => return Err(outcome),
+                        Departure::Rises(_) if after < 1.0 => {
+                            start = Start::behind(after, until);
+                            continue;
                         }
+                        _ => return Ok(Found::Nothing),
                     }
-                    let crosses =
-                        !is_accelerated(surface, step)? && crosses_at_rest(surface, step, 0.0)?;
-                    return Err(match crosses {
-                        true => Outcome::TangentialCrossing { surface },
-                        false => Outcome::Contact { surface },
-                    });
                 }
                 let places = Bracket {
                     before: part,
@@ -244,8 +241,9 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let mut evaluations = 0;
         let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+        let rounding = rounding + error_at_start(surface, step);
         step.counters.event_evaluations += evaluations;
-        step.counters.enclosures += 1;
+        step.counters.enclosures += 2;
         self.path.enclose();
         let (path, part) = (&self.path, [0.0, part]);
         let component = |i: usize| path.component(i, part);
@@ -307,6 +305,18 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
+    /// The largest magnitudes of the components up to this fraction of the step: the motion behind a hit does not take
+    /// place.
+    fn sizes_until(&mut self, part: f64) -> Sys::State {
+        self.path.enclose();
+        let mut sizes = self.sizes_at_start;
+        for (i, size) in sizes.as_mut_slice().iter_mut().enumerate() {
+            let range = self.path.component(i, [0.0, part]).range();
+            *size = size.abs().max(range.magnitude());
+        }
+        sizes
+    }
+
     /// Marks a grazing impact: a hit so slow that the gap's lowest value would be within its rounding error, or within
     /// the error of the integrator. `rate` is the gap rate there, `last` that at the end of the step.
     fn note_graze<Step: Stepper<Sys>>(
@@ -329,14 +339,15 @@ impl<Sys: Impacting> Watch<Sys> {
         let missed = SAFETY * self.errors * tolerance.relative().max(tolerance.absolute());
         let slow = SLOW.max(2.0 * math::sqrt(missed));
         if rate.abs() <= slow * ends[0].abs().max(ends[1].abs()) {
+            let sizes = self.sizes_until(part);
             let mut evaluations = 0;
-            let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+            let rounding = rounding_along(surface, step, part, &sizes, &mut evaluations);
             if self.is_slow(surface, rate, || rounding) {
                 graze = Graze::WithinRounding;
             } else if self.errors > 0.0 && change > 0.0 {
                 // NOTE: only a gap with positive second derivative would have turned before the surface.
                 let scale = step.system.scale(step.t_end(), step.end());
-                let unit = (&self.sizes, &scale, tolerance);
+                let unit = (&sizes, &scale, tolerance);
                 let here = (step.time(part), &step.state(part));
                 let error = error_within(step.system, surface, here, unit, &mut evaluations);
                 if self.is_slow(surface, rate, || SAFETY * self.errors * error) {
@@ -350,73 +361,6 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.grazes[surface] = graze;
         Ok(())
-    }
-
-    /// True if the motion goes into a touched surface, false if it goes along it within rounding errors. Rounding
-    /// errors accumulate along a wall, so their sum over the steps decides nothing.
-    pub(super) fn is_pressed<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> bool {
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        let is_falling = |rate: f64| rate * glance.length < -rounding;
-        glance.rate(surface).is_some_and(is_falling)
-    }
-
-    /// First change of a touched gap, from the start of the step on, that exceeds its rounding error.
-    ///
-    /// NOTE: at the end of a long step, the rate or the gap may be positive again although the motion went into the
-    /// surface. The gap departs like a power of time, so that it is read at times in a geometric sequence. A motion that
-    /// has just been released may sink by the error of the integrator; the second rate tells it from one that is pressed.
-    fn departure<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-    ) -> Departure {
-        let mut evaluations = 0;
-        let mut departure = Departure::None;
-        let mut octave = LEAST_DEPARTURE;
-        while departure == Departure::None && octave < 1.0 {
-            for part in [1.5 * octave, 2.0 * octave] {
-                let gaps = step.system.gaps(step.time(part), &step.state(part));
-                let gap = gaps.as_slice()[surface];
-                let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-                evaluations += 1;
-                if gap < -2.0 * rounding {
-                    departure = Departure::Sinks;
-                    break;
-                }
-                if gap > FLAT * rounding {
-                    departure = Departure::Rises;
-                    break;
-                }
-            }
-            octave *= 2.0;
-        }
-        step.counters.event_evaluations += evaluations;
-        departure
-    }
-
-    /// True if the gap is negative at the end of the step by more than its rounding error. A motion along a wall
-    /// crosses it back and forth by less.
-    pub(super) fn is_sunk<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) -> bool {
-        let gap = glance.gaps.as_slice()[surface];
-        if gap >= 0.0 {
-            return false;
-        }
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        gap < -2.0 * rounding
     }
 }
 

@@ -29,7 +29,7 @@ const HIDDEN: f64 = 1.0 / 8.0;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The gaps of a step as polynomials in the fraction of the step.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct GapSeries<G: StateVector> {
     /// The polynomials. Their error bounds cover deviations at the end of the step, rounding errors, and, after
     /// [`GapSeries::certify`], truncation errors.
@@ -49,15 +49,76 @@ pub(super) struct GapSeries<G: StateVector> {
     pub(super) is_sharp: bool,
 }
 
-impl<G: StateVector> GapSeries<G> {
-    /// The polynomials of a step that is a series, with the gaps `last` at its end.
+/// The polynomials of the last step, which are computed when they are needed.
+#[derive(Debug, Clone)]
+pub(super) struct LastSeries<G: StateVector> {
+    // NOTE: storage for all steps. A new one for each step would be copied more often than it is read.
+    series: GapSeries<G>,
+    is_known: bool,
+}
+
+impl<G: StateVector> LastSeries<G> {
+    /// No polynomials, for as many gaps as `like`.
+    pub(super) fn none(like: &G) -> Self {
+        Self {
+            series: GapSeries::zero(like),
+            is_known: false,
+        }
+    }
+
+    /// Forgets the polynomials: there is a new step.
     #[inline(always)]
-    pub(super) fn of<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+    pub(super) fn forget(&mut self) {
+        self.is_known = false;
+    }
+
+    /// The polynomials, once computed.
+    #[inline(always)]
+    pub(super) fn known(&self) -> Option<&GapSeries<G>> {
+        self.is_known.then_some(&self.series)
+    }
+
+    /// Returns the polynomials of a step with the gaps `last` at its end. They are computed in the first call; `None` if
+    /// the step is not a power series.
+    #[inline(always)]
+    pub(super) fn expand<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+        &mut self,
         step: &StepView<'_, Sys, Step>,
         last: &G,
-    ) -> Option<Self> {
-        let Series { unit, order } = step.stepper.series()?;
-        let mut polynomials = Polynomials::zero(last);
+    ) -> Option<&mut GapSeries<G>> {
+        if !self.is_known {
+            self.is_known = self.series.fill(step, last);
+        }
+        self.is_known.then_some(&mut self.series)
+    }
+}
+
+impl<G: StateVector> GapSeries<G> {
+    fn zero(like: &G) -> Self {
+        let zeros = like.zeroed();
+        Self {
+            polynomials: Polynomials::zero(like),
+            floors: zeros,
+            sizes: zeros,
+            tails: zeros,
+            certain: PerSurface::all(like, None),
+            last: zeros,
+            slopes: zeros,
+            is_sharp: false,
+        }
+    }
+
+    /// Computes the polynomials of a step with the gaps `last` at its end. False if the step is not a power series.
+    #[inline(always)]
+    fn fill<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+        &mut self,
+        step: &StepView<'_, Sys, Step>,
+        last: &G,
+    ) -> bool {
+        let Some(Series { unit, order }) = step.stepper.series() else {
+            return false;
+        };
+        let polynomials = &mut self.polynomials;
         polynomials.order = order;
         let theta = step.length() / unit;
         let mut power = 1.0;
@@ -76,28 +137,21 @@ impl<G: StateVector> GapSeries<G> {
             power *= theta;
         }
         let [sizes, steeps] = polynomials.sum();
-        let mut tails = last.zeroed();
-        let mut is_sharp = true;
+        self.is_sharp = true;
         for i in 0..last.count() {
             let at = |values: &G| values.as_slice()[i];
             let missed = (at(&sums) - at(last)).abs();
             let (size, first) = (at(&sizes), at(&firsts));
-            is_sharp &= missed <= USEFUL * size && size <= 2.0 * first;
+            self.is_sharp &= missed <= USEFUL * size && size <= 2.0 * first;
             let [doubts, drifts] = &mut polynomials.doubts;
             doubts.as_mut_slice()[i] = 4.0 * missed + ROUNDING * size;
             drifts.as_mut_slice()[i] = 4.0 * order as f64 * missed + ROUNDING * at(&steeps);
-            tails.as_mut_slice()[i] = size - first;
+            self.tails.as_mut_slice()[i] = size - first;
+            self.floors.as_mut_slice()[i] = 0.0;
         }
-        Some(Self {
-            polynomials,
-            floors: last.zeroed(),
-            sizes,
-            tails,
-            certain: PerSurface::all(last, None),
-            last: *last,
-            slopes,
-            is_sharp,
-        })
+        self.certain.fill(None);
+        (self.sizes, self.last, self.slopes) = (sizes, *last, slopes);
+        true
     }
 
     /// Adds a bound of the truncation error to the error bounds of a surface's polynomial. True if there is a bound.

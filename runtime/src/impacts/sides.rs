@@ -12,7 +12,7 @@ use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
-use crate::events::resolution::counts_beyond_rounding;
+use crate::events::resolution::{counts_beyond_rounding, evaluation_error};
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
@@ -140,7 +140,8 @@ impl<Sys: Impacting> Watch<Sys> {
             let is_wall = !self.is_passable(surface);
             if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                if gap >= -2.0 * rounding(now, surface, &self.sizes) - drift {
+                let error = evaluation_error(now.system, surface, now.t, now.state);
+                if gap >= -2.0 * rounding(now, surface, &self.sizes) - drift - error {
                     self.gaps.as_mut_slice()[surface] = 0.0;
                 } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)
                 {

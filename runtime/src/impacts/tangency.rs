@@ -35,6 +35,26 @@ pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(false)
 }
 
+/// True if the second rate of a gap accounts for its negative value at `part`. Gap and gap rate are 0 at the start of the
+/// step, and the second rate may be.
+///
+/// NOTE: the error of a long step's dense output may sink as well. It changes the second rate by less than that.
+pub(super) fn sinks_by_its_second_rate<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<bool, Outcome> {
+    let (t, state) = (step.time(part), step.state(part));
+    let mut rate = step.system.zero_state();
+    step.system.rate(t, &state, &mut rate)?;
+    let Some(accelerations) = second_rates(step.system, t, &state, &rate)? else {
+        return Ok(false);
+    };
+    let elapsed = part * step.length();
+    let gap = step.system.gaps(t, &state).as_slice()[surface];
+    Ok(accelerations.as_slice()[surface] * elapsed * elapsed < gap)
+}
+
 /// True if a gap that is 0 at this fraction of a step, with gap rate 0, continues like the cube of time. If it
 /// continues like the square of time, the motion has a grazing impact or begins a contact. The changes of the rate over
 /// an eighth and a quarter of the remaining step distinguish the two cases.

@@ -28,16 +28,24 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
+        glance: &Glance<Sys::Gaps>,
     ) -> bool {
-        let Self { tails, path, .. } = self;
-        if glance.is_certain(surface) {
+        let Self {
+            tails,
+            path,
+            series,
+            ..
+        } = self;
+        if series
+            .known()
+            .is_some_and(|series| series.is_certain(surface))
+        {
             return true;
         }
         if !glance.has_series() || tails.skips(surface) {
             return false;
         }
-        let Some(series) = glance.expand(step) else {
+        let Some(series) = series.expand(step, &glance.gaps) else {
             return false;
         };
         if !series.is_sharp {
@@ -62,7 +70,7 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
+        glance: &Glance<Sys::Gaps>,
     ) -> Told {
         if self.held.is_held(surface) {
             return Told::Passed;
@@ -84,7 +92,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let whole = [0.0, 1.0];
         let is_certain = self.certify(surface, step, glance);
-        let model = match glance.series().filter(|_| is_certain) {
+        let model = match self.series.known().filter(|_| is_certain) {
             Some(series) => match series.signs(surface, is_at_hand) {
                 Signs::Positive | Signs::Negative => return Told::Clear,
                 _ => return Told::Unclear(None),

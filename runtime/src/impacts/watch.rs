@@ -13,6 +13,7 @@ use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
 use super::place::Place;
+use super::series::LastSeries;
 use super::told::Told;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -62,7 +63,7 @@ pub(super) struct Watch<Sys: Impacting> {
     /// Largest absolute values of the state's components since the last impact; they determine the rounding errors.
     pub(super) sizes: Sys::State,
     /// The sizes at the start of the last step. A cut uses them, because the motion behind it does not contribute.
-    sizes_at_start: Sys::State,
+    pub(super) sizes_at_start: Sys::State,
     /// Number of steps since the last impact. Each has rounded the state.
     pub(super) steps: u32,
     /// Sum of the local errors of these steps, in units of the tolerance.
@@ -78,6 +79,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) is_told: PerSurface<bool, Sys::Gaps>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
+    /// The gaps along the last step, if it is a power series.
+    pub(super) series: LastSeries<Sys::Gaps>,
     /// A box in which no gap vanishes.
     haven: Haven<Sys::State>,
     /// A box with bounds of the gaps' derivatives.
@@ -128,6 +131,7 @@ impl<Sys: Impacting> Watch<Sys> {
             held: Held::none(&zeros),
             behind: None,
             path: Path::new(&state),
+            series: LastSeries::none(&zeros),
             haven: Haven::new(positions, &state),
             limits: Bends::new(positions, &state, &zeros),
             tails: Tails::new(positions, &state, &zeros),
@@ -401,8 +405,9 @@ impl<Sys: Impacting> Watch<Sys> {
             self.catch_up(step)?;
         }
         let mut glance = glance(step)?;
+        self.series.forget();
         if self.may_be_due(&glance) {
-            glance.look_closer(step)?;
+            glance.look_closer(&mut self.series, step)?;
         }
         let mut surfaces = 0..self.gaps.count();
         // Polynomials of a few gaps cost less than boxes.
@@ -418,7 +423,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let mut has_told = true;
         self.is_told.fill(false);
-        let unclear = surfaces.find_map(|surface| match self.told(surface, step, &mut glance) {
+        let unclear = surfaces.find_map(|surface| match self.told(surface, step, &glance) {
             Told::Unclear(model) => Some((surface, model)),
             told => {
                 has_told &= matches!(told, Told::Passed);
@@ -430,12 +435,12 @@ impl<Sys: Impacting> Watch<Sys> {
             self.limits.learn(has_told);
         }
         if let Some(first) = unclear {
-            let last_rates = glance.look_closer(step)?;
+            let last_rates = glance.look_closer(&mut self.series, step)?;
             if !self.has_rates {
                 self.rates = step.system.gap_rates(step.t_start(), step.start())?;
                 self.has_rates = true;
             }
-            self.search(step, &mut glance, &last_rates, first)?;
+            self.search(step, &glance, &last_rates, first)?;
         }
         if self.has_guarded {
             self.look_behind(step)?;
@@ -485,7 +490,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.gaps = glance.gaps;
         let is_off = self.gaps.as_slice().iter().all(|&gap| gap > 0.0);
         if !is_off {
-            glance.look_closer(step)?;
+            glance.look_closer(&mut self.series, step)?;
         }
         self.has_rates = match glance.rates() {
             Some(rates) => {

@@ -74,7 +74,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         powers[..=K].fill(self.base.value.zeroed());
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let degree = K - 1 - k;
-            for i in 0..coefficient.padded().len() {
+            coefficient.for_each_place(|i| {
                 powers[0].padded_mut()[i] += coefficient.padded()[i];
                 for j in (0..=degree).rev() {
                     let power = powers[j].padded()[i];
@@ -86,11 +86,10 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
                 if is_along(k) {
                     powers[0].padded_mut()[i] = 0.0;
                 }
-            }
+            });
         }
-        for i in 0..self.base.value.padded().len() {
-            powers[0].padded_mut()[i] += self.base.value.padded()[i];
-        }
+        let base = &self.base.value;
+        base.for_each_place(|i| powers[0].padded_mut()[i] += base.padded()[i]);
         K
     }
 
@@ -106,10 +105,10 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         let mut value = self.base.value.zeroed();
         for (k, coefficient) in self.coefficients.iter().enumerate().rev() {
             let factor = if is_along(k) { theta } else { 1.0 - theta };
-            for i in 0..coefficient.padded().len() {
+            coefficient.for_each_place(|i| {
                 let sum = value.padded()[i] + coefficient.padded()[i];
                 value.padded_mut()[i] = sum * factor;
-            }
+            });
         }
         self.base.advanced(|i| value.padded()[i])
     }

@@ -443,22 +443,22 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
         let (h, stages) = (self.ends.length(), self.stages.as_ref());
         let first = stages[0].padded();
         let (mut bends, mut twists) = (stages[0].zeroed(), stages[0].zeroed());
-        for i in 0..first.len() {
+        stages[0].for_each_place(|i| {
             let gained = h * (stages[M::LAST].padded()[i] - first[i]);
             let bend = self.ends.end.minus(&self.ends.start, i) - h * first[i];
             bends.padded_mut()[i] = bend;
             twists.padded_mut()[i] = 2.0 * bend - gained;
-        }
+        });
         let mut sway = stages[0].zeroed();
         for k in 1..M::LAST {
             let node = M::NODES[k];
-            for i in 0..first.len() {
+            stages[0].for_each_place(|i| {
                 let cubic =
                     node * (2.0 * bends.padded()[i] + (2.0 - 3.0 * node) * twists.padded()[i]);
                 let apart = (h * stages[k].padded()[i] - cubic).abs();
                 let largest = &mut sway.padded_mut()[i];
                 *largest = largest.max(apart);
-            }
+            });
         }
         Some(sway)
     }

@@ -50,14 +50,14 @@ impl<S: StateVector> Precise<S> {
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;
-        for i in 0..sum.value.padded().len() {
+        self.value.for_each_place(|i| {
             let before = self.value.padded()[i];
             let change = self.rest.padded()[i] + increment(i);
             let after = before + change;
             let gained = after - before;
             sum.value.padded_mut()[i] = after;
             sum.rest.padded_mut()[i] = (before - (after - gained)) + (change - gained);
-        }
+        });
         sum
     }
 }

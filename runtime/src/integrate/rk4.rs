@@ -54,13 +54,10 @@ impl<F: VectorField> Advance<F> for ClassicalRungeKutta {
         let (mut slope, mut sum) = (*rate, *rate);
         for (part, weight) in STAGES {
             let mut inside = state.value;
-            for i in 0..inside.padded().len() {
-                inside.padded_mut()[i] = state.plus(i, part * h * slope.padded()[i]);
-            }
+            let plus = |i| inside.padded_mut()[i] = state.plus(i, part * h * slope.padded()[i]);
+            rate.for_each_place(plus);
             evaluate(field, t + part * h, &inside, &mut slope)?;
-            for i in 0..sum.padded().len() {
-                sum.padded_mut()[i] += weight * slope.padded()[i];
-            }
+            rate.for_each_place(|i| sum.padded_mut()[i] += weight * slope.padded()[i]);
         }
         Ok(state.advanced(|i| h * sum.padded()[i] / 6.0))
     }

@@ -54,20 +54,17 @@ pub(super) fn combine<S: StateVector>(
     (node, terms): (f64, &[Term]),
     out: &mut S,
 ) {
-    for i in 0..base.padded().len() {
+    base.for_each_place(|i| {
         let rate = node * stages[0].padded()[i] + sum(stages, terms, i);
         out.padded_mut()[i] = base.padded()[i] + h * rate;
-    }
+    });
 }
 
 /// Replaces the rate of a stage by its difference from that of the first stage.
 #[inline(always)]
 pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     let first = stages[0];
-    // NOTE: a loop. An iterator over both vectors would not be inlined in the steps of an erased system.
-    for i in 0..first.padded().len() {
-        stages[stage].padded_mut()[i] -= first.padded()[i];
-    }
+    first.for_each_place(|i| stages[stage].padded_mut()[i] -= first.padded()[i]);
 }
 
 /// The larger of two numbers; NaN if either is NaN.

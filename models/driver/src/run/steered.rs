@@ -1,12 +1,12 @@
 //! Runs whose inputs are functions of time and state.
 //!
-//! They run on the erased system of the largest capacity, so that this code is compiled only once.
+//! They run on [`Largest`], so that this code is compiled only once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use dalembert::effects::{Moment, StepView};
-use dalembert::erased::{self, Bounded, Erased, PARAMETERS};
+use dalembert::erased::{self, Bounded, PARAMETERS};
 use dalembert::forces::NoForces;
 use dalembert::inputs::Steered;
 use dalembert::integrate::{
@@ -21,20 +21,18 @@ use dalembert::{
 use super::{Bridge, Ending, Integrals, Reading, Settings, Solved, Watch, ending, stepping};
 use crate::integrator::{Form, Integrator};
 use crate::model::{Origin, Point, point};
+use crate::owner::Largest;
 use crate::refusal::Refusal;
 use crate::typed::prepare;
 
-/// The system without the input functions.
-type Plain<'f> = Erased<'f, 32>;
-
 /// The state of that system.
-type State<'f> = <Plain<'f> as VectorField>::State;
+type State<'f> = <Largest<'f> as VectorField>::State;
 
 /// Values of all inputs.
 type Inputs = Bounded<f64, PARAMETERS>;
 
 /// The system with inputs from a function.
-type Driven<'f, 'c> = Steered<Plain<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
+type Driven<'f, 'c> = Steered<Largest<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
 
 /// Values of all inputs, in order, from time, positions and velocities.
 pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
@@ -75,7 +73,7 @@ pub fn steer(
     control: &Control<'_>,
     watch: &mut dyn Watch,
 ) -> Option<Result<Ending, Refusal>> {
-    let mut model = Plain::of(form)?;
+    let mut model = Largest::of(form)?;
     for (index, value) in values.iter().enumerate() {
         model.set_parameter(index, *value);
     }
@@ -139,7 +137,8 @@ fn run_chosen<'f>(
     macro_rules! run {
         ($stepper:expr) => {{
             let mut stepper = $stepper;
-            run(steered, &mut stepper, state, settings, clock, watch)
+            let stepper = Chosen::new(&mut stepper);
+            run(steered, stepper, state, settings, clock, watch)
         }};
         (limited $stepper:expr) => {
             match $stepper.with_max_step(longest) {
@@ -160,7 +159,7 @@ fn run_chosen<'f>(
 
 fn run<'f, 'c>(
     steered: &Driven<'f, 'c>,
-    stepper: &mut impl Stepper<Driven<'f, 'c>>,
+    stepper: Chosen<'_, Driven<'f, 'c>>,
     state: State<'f>,
     settings: &Settings,
     clock: Option<Clock<'_, 'f>>,
@@ -193,8 +192,7 @@ fn run<'f, 'c>(
     let first = bridge.0.point(0.0, &state);
     let budget = settings.steps.unwrap_or(STEP_BUDGET);
     let effects = (projection, impacts, clock);
-    let mut simulation =
-        Simulation::new(steered, Chosen::new(stepper), effects).with_step_budget(budget);
+    let mut simulation = Simulation::new(steered, stepper, effects).with_step_budget(budget);
     let run = simulation.run(0.0, state, settings.until, &mut bridge)?;
     let ends = [first, bridge.0.point(run.t, &run.state)];
     let step = simulation.fixed_step();
@@ -202,7 +200,7 @@ fn run<'f, 'c>(
 }
 
 /// Observer of the system with input functions that forwards to an observer of the system without them.
-struct Driver<'a, 'f, R>(Bridge<'a, Plain<'f>, R>);
+struct Driver<'a, 'f, R>(Bridge<'a, Largest<'f>, R>);
 
 /// The values at states, with the inputs at these states.
 struct Given<'a, 'f, 'c>(&'a Driven<'f, 'c>);
@@ -219,15 +217,15 @@ impl<'f> Reading<State<'f>> for Given<'_, 'f, '_> {
 
 impl<'f, 'c, R: Reading<State<'f>>> Observer<Driven<'f, 'c>> for Driver<'_, 'f, R> {
     fn step(&mut self, segment: &mut Segment<'_, State<'f>>) -> ControlFlow<()> {
-        Observer::<Plain<'f>>::step(&mut self.0, segment)
+        Observer::<Largest<'f>>::step(&mut self.0, segment)
     }
 
     fn event(&mut self, event: &Event<State<'f>>) -> ControlFlow<()> {
-        Observer::<Plain<'f>>::event(&mut self.0, event)
+        Observer::<Largest<'f>>::event(&mut self.0, event)
     }
 
     fn hold(&mut self, hold: &Hold<State<'f>>) -> ControlFlow<()> {
-        Observer::<Plain<'f>>::hold(&mut self.0, hold)
+        Observer::<Largest<'f>>::hold(&mut self.0, hold)
     }
 }
 

@@ -120,23 +120,15 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         let (mut change, mut slope) =
             (self.coefficients[0].zeroed(), self.coefficients[0].zeroed());
         for coefficient in self.coefficients[1..=order].iter().rev() {
-            // Entries that are lanes gain nothing from a length that is known at compile time.
-            let (change, slope, entries) = match L::LANES {
-                1 => (
-                    change.padded_mut(),
-                    slope.padded_mut(),
-                    coefficient.padded(),
-                ),
-                _ => (
-                    change.as_mut_slice(),
-                    slope.as_mut_slice(),
-                    coefficient.as_slice(),
-                ),
+            let add = |i: usize| {
+                let next = change.padded()[i].mul_add(theta, coefficient.padded()[i]);
+                slope.padded_mut()[i] = slope.padded()[i].mul_add(theta, next);
+                change.padded_mut()[i] = next;
             };
-            for i in 0..entries.len() {
-                let next = change[i].mul_add(theta, entries[i]);
-                slope[i] = slope[i].mul_add(theta, next);
-                change[i] = next;
+            // Entries that are lanes gain nothing from blocks of known length.
+            match L::LANES {
+                1 => coefficient.for_each_place(add),
+                _ => (0..coefficient.as_slice().len()).for_each(add),
             }
         }
         for sum in change.as_mut_slice() {

@@ -346,9 +346,7 @@ impl<F: TaylorField> Taylor<F> {
         let mut change = self.rates[1].zeroed();
         for coefficient in self.expansion.coefficients[1..=self.order].iter().rev() {
             let (sums, entries) = (change.padded_mut(), coefficient.padded());
-            for i in 0..entries.len() {
-                sums[i] = math::mul_add(sums[i], s, entries[i]);
-            }
+            coefficient.for_each_place(|i| sums[i] = math::mul_add(sums[i], s, entries[i]));
         }
         self.ends.start.advanced(|i| change.padded()[i] * s)
     }

@@ -169,10 +169,8 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let mut power = 1.0;
         let known = &self.expansion.coefficients[..=self.order];
         for (to, from) in coefficients.iter_mut().zip(known) {
-            let (to, from) = (to.padded_mut(), from.padded());
-            for i in 0..from.len() {
-                to[i] = power * from[i];
-            }
+            let to = to.padded_mut();
+            from.for_each_place(|i| to[i] = power * from.padded()[i]);
             power *= part;
         }
         self.order
