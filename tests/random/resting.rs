@@ -65,7 +65,7 @@ fn case(random: &mut Random) -> Case {
     );
     let weight = one_of(random, &[0.0, 1.0, 9.81]);
     let until = one_of(random, &[1.0, 3.0, 7.5]);
-    if random.bits() % 2 == 0 {
+    if random.bits().is_multiple_of(2) {
         let gap = one_of(
             random,
             &[
