@@ -193,7 +193,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
         let error = evaluation_error(step.system, surface, step.t_end(), step.end());
-        gap < -2.0 * rounding - error
+        gap < -2.0 * (rounding + error)
     }
 }
 

@@ -11,7 +11,7 @@ use super::watch::{Graze, Watch};
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::locate::{Bracket, Search, Start};
-use crate::events::resolution::{error_within, resolution};
+use crate::events::resolution::{error_within, evaluation_error, resolution};
 use crate::integrate::Stepper;
 use crate::integrate::controller::least_trial;
 use crate::math;
@@ -142,6 +142,9 @@ impl<Sys: Impacting> Watch<Sys> {
             until,
         };
         let ends = [gap, glance.gaps.as_slice()[surface]];
+        // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate leaves the
+        // touched surface, whatever the rounding error of the gap.
+        let leaves_at_once = slope >= Some(0.0) && glance.is_moment();
         let mut tangential = None;
         for _ in 0..FALLS {
             let known = Known {
@@ -150,6 +153,22 @@ impl<Sys: Impacting> Watch<Sys> {
                 whole,
             };
             let found = first_fall(surface, step, &mut self.path, &self.sizes, known, start);
+            let is_open = !(leaves_at_once && matches!(found, Search::Pole(_)));
+            if is_open && let Some(part) = self.hidden(surface, found, start, step) {
+                match self.unclear_departure(surface, step, glance)? {
+                    Some(Departure::Pressed(outcome)) => return Err(outcome),
+                    Some(Departure::None) => return Ok(Found::Nothing),
+                    Some(Departure::Rises(from)) if from < 1.0 => {
+                        start = Start {
+                            from,
+                            slope: None,
+                            ..start
+                        };
+                        continue;
+                    }
+                    _ => return Ok(Found::Unfinished(part)),
+                }
+            }
             let (part, after, nearest) = match found {
                 Search::Clear => {
                     return match tangential {
@@ -159,31 +178,8 @@ impl<Sys: Impacting> Watch<Sys> {
                         _ => Ok(Found::Nothing),
                     };
                 }
-                Search::Unfinished(part) => {
-                    let is_touched = start.slope.is_some() && start.above;
-                    let departure = match is_touched && is_active(surface, step, 0.0) {
-                        true => self.unclear_departure(surface, step, glance)?,
-                        false => None,
-                    };
-                    match departure {
-                        Some(Departure::Pressed(outcome)) => return Err(outcome),
-                        Some(Departure::None) => return Ok(Found::Nothing),
-                        Some(Departure::Rises(from)) if from < 1.0 => {
-                            start = Start {
-                                from,
-                                slope: None,
-                                ..start
-                            };
-                            continue;
-                        }
-                        _ => return Ok(Found::Unfinished(part)),
-                    }
-                }
-                // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate
-                // leaves the touched surface, whatever the rounding error of the gap.
-                Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
-                    return Ok(Found::Nothing);
-                }
+                Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
+                Search::Pole(_) if leaves_at_once => return Ok(Found::Nothing),
                 Search::Pole(after) => {
                     self.check_behind_pole(surface, after, step)?;
                     start = Start::behind(after, until);
@@ -220,6 +216,31 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// The fraction of the step at which the search on a touched surface ends because the rounding error of the gap hides
+    /// its sign. A gap that is nothing but rounding errors may look like a pole.
+    fn hidden<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        found: Search,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Option<f64> {
+        let is_touched = start.slope.is_some() && start.above && is_active(surface, step, 0.0);
+        match found {
+            Search::Unfinished(part) if is_touched => Some(part),
+            Search::Pole(part) if is_touched => {
+                let (t, state) = (step.time(part), step.state(part));
+                let gap = step.system.gaps(t, &state).as_slice()[surface];
+                let mut evaluations = 1;
+                let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+                step.counters.event_evaluations += evaluations;
+                let error = evaluation_error(step.system, surface, t, &state);
+                (gap.abs() <= 2.0 * (rounding + error)).then_some(part)
+            }
+            _ => None,
+        }
     }
 
     /// True if a fall of a touched surface belongs to the start of the step: it is there, or the gap has not risen

@@ -141,7 +141,8 @@ impl<Sys: Impacting> Watch<Sys> {
             if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
                 let error = evaluation_error(now.system, surface, now.t, now.state);
-                if gap >= -2.0 * rounding(now, surface, &self.sizes) - drift - error {
+                let rounding = rounding(now, surface, &self.sizes) + error;
+                if gap >= -2.0 * rounding - drift {
                     self.gaps.as_mut_slice()[surface] = 0.0;
                 } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)
                 {
