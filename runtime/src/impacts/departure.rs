@@ -1,4 +1,4 @@
-//! What the motion does to a surface that it touches at the start of a step: it leaves it, presses into it, or goes along it.
+//! Departure from a touched surface at the start of a step: the motion leaves it, presses into it, or goes along it.
 
 use super::glance::Glance;
 use super::search::{FLAT, rounding_along};
@@ -15,7 +15,7 @@ use crate::state::StateVector;
 /// time is there about a rounding error of what it is at the end.
 const LEAST_DEPARTURE: f64 = 1.0 / (1 << 26) as f64;
 
-/// What the motion does to a touched surface.
+/// Departure from a touched surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Departure {
     /// It leaves the surface, and may return within the step. At this fraction the gap is beyond its rounding error.
@@ -35,7 +35,7 @@ enum Change {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// What the motion does to a surface that it touches at the start of the step, with a gap rate that is not positive.
+    /// Decides the departure from a surface that is touched at the start of the step, with a gap rate that is not positive.
     pub(super) fn departure<Step: Stepper<Sys>>(
         &self,
         surface: usize,

@@ -1,6 +1,8 @@
 //! Event location along a step that the first tests left undecided. Finds falls of gaps through zero, selects the
 //! impacts among them, and decides if motion that starts on a surface leaves it or presses into it.
 
+use core::ops::ControlFlow;
+
 use super::departure::{Departure, error_at_start};
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
@@ -155,19 +157,12 @@ impl<Sys: Impacting> Watch<Sys> {
             let found = first_fall(surface, step, &mut self.path, &self.sizes, known, start);
             let is_open = !(leaves_at_once && matches!(found, Search::Pole(_)));
             if is_open && let Some(part) = self.hidden(surface, found, start, step) {
-                match self.unclear_departure(surface, step, glance)? {
-                    Some(Departure::Pressed(outcome)) => return Err(outcome),
-                    Some(Departure::None) => return Ok(Found::Nothing),
-                    Some(Departure::Rises(from)) if from < 1.0 => {
-                        start = Start {
-                            from,
-                            slope: None,
-                            ..start
-                        };
-                        continue;
-                    }
-                    _ => return Ok(Found::Unfinished(part)),
+                match self.depart(surface, start, step, glance)? {
+                    ControlFlow::Continue(next) => start = next,
+                    ControlFlow::Break(true) => return Ok(Found::Nothing),
+                    ControlFlow::Break(false) => return Ok(Found::Unfinished(part)),
                 }
+                continue;
             }
             let (part, after, nearest) = match found {
                 Search::Clear => {
@@ -240,6 +235,26 @@ impl<Sys: Impacting> Watch<Sys> {
                 (gap.abs() <= 2.0 * (rounding + error)).then_some(part)
             }
             _ => None,
+        }
+    }
+
+    /// The start of the search behind the part of the step where rounding hides the sign of a touched gap. Breaks with true
+    /// if there is no hit in the step, with false if that remains open.
+    fn depart<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<ControlFlow<bool, Start>, Outcome> {
+        match self.unclear_departure(surface, step, glance)? {
+            Some(Departure::Pressed(outcome)) => Err(outcome),
+            Some(Departure::Rises(from)) if from < 1.0 => Ok(ControlFlow::Continue(Start {
+                from,
+                slope: None,
+                ..start
+            })),
+            departure => Ok(ControlFlow::Break(departure == Some(Departure::None))),
         }
     }
 
