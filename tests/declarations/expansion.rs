@@ -2,7 +2,7 @@
 //!
 //! The bounds are those of a user's build. Cargo builds procedural macros without optimisation in every profile; each
 //! model must then expand in under a second. With optimisation it must expand in under 50 ms. Times are the shortest of
-//! five. On a slow machine the bound is relative to the time of reading the generated text as tokens.
+//! several. On a slow machine the bound is relative to the time of reading the generated text as tokens.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -19,12 +19,10 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 /// Serialises the measurements, since the tests of one file run in parallel.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Measurements of an expansion.
+/// The shortest times of several expansions.
 struct Expansion {
-    /// The shortest of five times.
     time: Duration,
-    /// The smallest of five ratios of the time to the time of reading the generated code, both measured one after the
-    /// other.
+    /// The smallest ratio of the time to the time of reading the generated code, both measured one after the other.
     to_reading: f64,
     /// Characters of the generated code.
     length: usize,
@@ -35,25 +33,42 @@ struct Expansion {
 const READINGS: f64 = 3.0;
 /// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;
+/// Number of measurements of a time that is compared with others.
+const MEASUREMENTS: usize = 5;
+/// Number of measurements after which a time that is over its bound is believed. Other programs slow down the memory
+/// for seconds.
+const PATIENCE: usize = 30;
 
-fn expansion(source: &str) -> Expansion {
-    let _alone = ALONE.lock();
-    let (mut time, mut to_reading, mut length) = (Duration::MAX, f64::INFINITY, 0);
-    for _ in 0..5 {
+impl Expansion {
+    /// Measures one expansion.
+    fn of(source: &str) -> Self {
+        let _alone = ALONE.lock();
         let tokens = source.parse().expect("tokens");
-        let (expansion, items) = timed(|| try_expand(tokens).expect("a model"));
+        let (time, items) = timed(|| try_expand(tokens).expect("a model"));
         let text = items.to_string();
         let (reading, read) = timed(|| text.parse::<TokenStream>());
         assert!(read.is_ok());
-        time = time.min(expansion);
-        to_reading = to_reading.min(expansion.as_secs_f64() / reading.as_secs_f64());
-        length = text.len();
+        Self {
+            time,
+            to_reading: time.as_secs_f64() / reading.as_secs_f64(),
+            length: text.len(),
+        }
     }
-    Expansion {
-        time,
-        to_reading,
-        length,
+
+    /// The same with one more measurement.
+    fn again(self, source: &str) -> Self {
+        let other = Self::of(source);
+        Self {
+            time: self.time.min(other.time),
+            to_reading: self.to_reading.min(other.to_reading),
+            length: self.length,
+        }
     }
+}
+
+/// The shortest of several times.
+fn expansion(source: &str) -> Expansion {
+    (1..MEASUREMENTS).fold(Expansion::of(source), |found, _| found.again(source))
 }
 
 /// The processor time of `work`, and its result. Other programs do not count.
@@ -118,28 +133,39 @@ fn shipped(name: &str) -> &'static str {
 }
 
 fn assert_expands_in_time(name: &str, source: &str, coordinates: usize) {
-    let Expansion {
-        time,
-        to_reading,
-        length,
-    } = expansion(&without_claims(source));
-    let with_claims = expansion(source).time;
-    let claims = with_claims.saturating_sub(time);
-    println!(
-        "{name:28} {:8.1} ms {length:8} characters, claims {:8.1} ms",
-        time.as_secs_f64() * 1e3,
-        claims.as_secs_f64() * 1e3,
-    );
-    assert!(
-        time < milliseconds(50, 1000) || to_reading < READINGS,
-        "{name}: {time:?}, {to_reading:.2} times as long as reading it"
-    );
-    if coordinates <= 6 {
-        assert!(
-            claims < milliseconds(100, 1500) || claims < EXPANSIONS * time,
-            "{name}: claims {claims:?}"
-        );
+    let without = without_claims(source);
+    let (mut bare, mut whole) = (Expansion::of(&without), Expansion::of(source));
+    for _ in 1..PATIENCE {
+        if over_its_bound(&bare, &whole, coordinates).is_none() {
+            break;
+        }
+        bare = bare.again(&without);
+        whole = whole.again(source);
     }
+    println!(
+        "{name:28} {:8.1} ms {:8} characters, claims {:8.1} ms",
+        bare.time.as_secs_f64() * 1e3,
+        bare.length,
+        whole.time.saturating_sub(bare.time).as_secs_f64() * 1e3,
+    );
+    if let Some(late) = over_its_bound(&bare, &whole, coordinates) {
+        panic!("{name}: {late}");
+    }
+}
+
+/// What takes too long, given the expansions without and with claims.
+fn over_its_bound(bare: &Expansion, whole: &Expansion, coordinates: usize) -> Option<String> {
+    let Expansion {
+        time, to_reading, ..
+    } = bare;
+    if *time >= milliseconds(50, 1000) && *to_reading >= READINGS {
+        return Some(format!(
+            "{time:?}, {to_reading:.2} times as long as reading it"
+        ));
+    }
+    let claims = whole.time.saturating_sub(*time);
+    let is_late = claims >= milliseconds(100, 1500) && claims >= EXPANSIONS * *time;
+    (coordinates <= 6 && is_late).then(|| format!("claims {claims:?}"))
 }
 
 #[test]

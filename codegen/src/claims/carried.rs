@@ -13,7 +13,8 @@
 use std::cmp::Ordering;
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RangePoint, RealPoint, Series, SymbolId,
+    Arithmetic, Ball, BallPoint, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series,
+    SymbolId,
 };
 
 use super::collision::{AtImpact, with_difference};
@@ -522,15 +523,15 @@ impl AtImpact for Carried<'_> {
         roots
     }
 
-    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+    fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         let goes_on = match self.sliding(model, point) {
-            Some(rate) => rate.is_none_or(|rate| P::sign(rate) == Some(Ordering::Less)),
+            Some(rate) => rate.is_none_or(|rate| rate.sign() == Some(Ordering::Less)),
             None => false,
         };
         goes_on
             && self.is_followed(|| {
                 let rates = self.carry(model, point)?.gap_rates?;
-                Some(rates.map(P::sign))
+                Some(rates.map(Ball::sign))
             })
     }
 

@@ -1,6 +1,6 @@
 //! Questions about states before an impact, answered on every component of the surface.
 
-use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint};
+use dalembert_expr::{BallPoint, ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint};
 
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
@@ -29,14 +29,14 @@ pub(super) trait AtImpact {
         after: &[Number<P>],
     ) -> Option<Vec<Number<P>>>;
 
-    /// True if a real state with these terms may serve as a witness.
+    /// True if a real state with these terms belongs to the question.
     fn wants(&self, terms: &[f64]) -> bool {
         let _ = terms;
         true
     }
 
     /// True if every state in the given ranges belongs to the question.
-    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+    fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         let _ = (model, point);
         true
     }
@@ -153,11 +153,11 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        let found = (self.wall).incoming(model, self.dynamics, attempt, self.roots());
-        found.filter(|(_, point)| {
-            let terms = self.terms(model, &mut point.clone());
-            terms.is_none_or(|terms| self.question.wants(&terms))
-        })
+        (self.wall).incoming(model, self.dynamics, attempt, self.roots())
+    }
+
+    fn wants(&self, terms: &[f64]) -> bool {
+        self.question.wants(terms)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -170,8 +170,8 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.question.scale(model, point, &after)
     }
 
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        let mut point = P::of(point);
+    fn enclosed(&self, model: &Model, point: &RealPoint) -> Option<BallPoint> {
+        let mut point = BallPoint::of(point);
         self.wall.enclose(model, &mut point)?;
         self.dynamics.motion(&model.pool, &mut point, None)?;
         let is_met = self.wall.is_met(model, &mut point);

@@ -1,8 +1,8 @@
 //! Evidence on whether a quantity vanishes at all states: residues at random states, and values at real states.
 
 use dalembert_expr::{
-    Arithmetic, BallPoint, Branches, Covered, EnclosedPoint, ExpansionPoint, ExprId, ModularPoint,
-    Node, Pool, Profile, RangePoint, RealPoint, SymbolId,
+    Arithmetic, Ball, BallPoint, Branches, Covered, ExpansionPoint, ExprId, ModularPoint, Node,
+    Pool, Profile, RangePoint, RealPoint, SymbolId,
 };
 
 use super::dynamics::{Dynamics, Number};
@@ -67,14 +67,20 @@ pub(super) trait Vanishing {
     /// The terms at a state.
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>>;
 
+    /// True if a real state with these terms belongs to the question.
+    fn wants(&self, terms: &[f64]) -> bool {
+        let _ = terms;
+        true
+    }
+
     /// Size of the terms' ingredients at a real state. Rounding errors are about `1e-16` times this, or larger if the
     /// metric or the constraints are ill-conditioned.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
     /// Ranges that contain a state close to a real one, so that printed values are exact. `None` if the existence of
     /// such a state is not certain. The dependent velocities follow from the other values.
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        let mut point = P::of(point);
+    fn enclosed(&self, model: &Model, point: &RealPoint) -> Option<BallPoint> {
+        let mut point = BallPoint::of(point);
         if let Some(dynamics) = self.dynamics() {
             dynamics.motion(&model.pool, &mut point, None)?;
         }
@@ -328,6 +334,9 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         let Some(terms) = question.terms(model, &mut point.clone()) else {
             continue;
         };
+        if !question.wants(&terms) {
+            continue;
+        }
         seen.is_real = true;
         let Some(scale) = question.scale(model, &mut point.clone()) else {
             continue;
@@ -345,12 +354,9 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         let size = if is_regular(sum) { sum.abs() } else { 0.0 };
         let found = if size > VISIBLE_DIGITS * scale {
             // The doubles have enough digits for a message.
-            let with_doubles = |_| (terms.clone(), sum);
-            let found = place.difference::<EnclosedPoint>(question);
-            let found = found.or_else(|| place.difference::<BallPoint>(question));
-            found.map(with_doubles)
+            place.difference(question).map(|_| (terms.clone(), sum))
         } else if attempt < ENCLOSED || size > VISIBLE * scale {
-            place.difference::<BallPoint>(question)
+            place.difference(question)
         } else {
             None
         };
@@ -366,9 +372,7 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
 
 /// True if a real point is certified to be next to a state of the question, for example one that meets a wall.
 fn is_state(model: &Model, question: &impl Vanishing, point: &RealPoint) -> bool {
-    let with_doubles: Option<EnclosedPoint> = question.enclosed(model, point);
-    let with_balls = || -> Option<BallPoint> { question.enclosed(model, point) };
-    with_doubles.is_some() || with_balls().is_some()
+    question.enclosed(model, point).is_some()
 }
 
 /// A real state.
@@ -394,20 +398,20 @@ impl<'p> Place<'p> {
     }
 
     /// The terms of a sum and the sum at the state, if an enclosure proves that the sum is not 0.
-    fn difference<P: RangePoint>(&self, question: &impl Vanishing) -> Option<(Vec<f64>, f64)> {
-        let mut state: P = question.enclosed(self.model, &self.point)?;
+    fn difference(&self, question: &impl Vanishing) -> Option<(Vec<f64>, f64)> {
+        let mut state = question.enclosed(self.model, &self.point)?;
         let field = state.field();
         let terms = question.terms(self.model, &mut state.clone())?;
-        let add = |sum, term: &Number<P>| field.add(sum, *term);
+        let add = |sum, term: &Ball| field.add(sum, *term);
         let sum = terms.iter().fold(field.integer(0), add);
-        P::sign(sum)?;
+        sum.sign()?;
         // An exact default value lies within rounding of its double.
         for (symbol, value) in &self.others {
             let range = state.symbol(&self.model.pool, *symbol);
-            state.set_symbol(*symbol, P::widened(range, f64::EPSILON * value.abs()));
+            state.set_symbol(*symbol, range.widened(f64::EPSILON * value.abs()));
         }
-        let shown = terms.iter().map(|term| P::nearest(*term)).collect();
-        is_defined(self.model, &mut state).then(|| (shown, P::nearest(sum)))
+        let shown = terms.iter().map(|term| term.nearest()).collect();
+        is_defined(self.model, &mut state).then(|| (shown, sum.nearest()))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RangePoint, RealPoint};
+use dalembert_expr::{Arithmetic, BallPoint, ExpansionPoint, ExprId, RealPoint};
 
 use super::collision::{AtImpact, after_and_before, evidence_at_impact, with_difference};
 use super::dynamics::{Dynamics, Number};
@@ -377,18 +377,18 @@ impl AtImpact for Change<'_> {
     /// True if terms with a sum other than 0 prove that the volume changes. Where the motion may slide, they do if the
     /// Jacobian is positive, because the motion then crosses the surface. If the sign of the Jacobian is unknown, they
     /// do if the volume before is not 0, because sliding maps it to 0. [`super::sliding`] examines motion that slides.
-    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+    fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         if !may_slide(self.wall) {
             return true;
         }
         let Some(jacobian) = self.wall.jacobian(model, point, &[]) else {
             return false;
         };
-        match P::sign(jacobian) {
+        match jacobian.sign() {
             Some(sign) => sign == Ordering::Greater,
             None => {
                 let terms = self.terms(model, point, &[]);
-                terms.is_some_and(|terms| P::sign(terms[1]).is_some())
+                terms.is_some_and(|terms| terms[1].sign().is_some())
             }
         }
     }

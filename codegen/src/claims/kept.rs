@@ -7,7 +7,7 @@
 
 use std::cmp::Ordering;
 
-use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint, Verdict as Zero};
+use dalembert_expr::{BallPoint, ExpansionPoint, ExprId, Pool, RealPoint, Verdict as Zero};
 
 use super::bounds::is_never_negative;
 use super::collision::{AtImpact, evidence_at_impact};
@@ -267,9 +267,9 @@ impl AtImpact for Negative<'_> {
         terms[0] < 0.0
     }
 
-    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+    fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         let terms = self.terms(model, point, &[]);
-        terms.is_some_and(|terms| P::sign(terms[0]) == Some(Ordering::Less))
+        terms.is_some_and(|terms| terms[0].sign() == Some(Ordering::Less))
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, _: &[f64]) -> Option<f64> {

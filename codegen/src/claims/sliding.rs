@@ -9,7 +9,7 @@
 
 use std::cmp::Ordering;
 
-use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint};
+use dalembert_expr::{BallPoint, ExpansionPoint, ExprId, Pool, RealPoint};
 
 use super::bounds::is_never_negative;
 use super::collision::{AtImpact, evidence_at_impact};
@@ -113,15 +113,15 @@ impl AtImpact for Slides<'_> {
         terms[0] < 0.0
     }
 
-    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+    fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         let order = model.pool.reachable(&self.claimed);
         let Some(values) = point.values(&model.pool, &order) else {
             return false;
         };
-        let claims = |id: &ExprId| P::sign(values[id.index()]).is_some();
+        let claims = |id: &ExprId| values[id.index()].sign().is_some();
         let is_claimed = self.claimed.iter().all(claims);
-        let jacobian = |point: &mut P| self.wall.jacobian(model, point, &[]);
-        is_claimed && jacobian(point).is_some_and(|it| P::sign(it) == Some(Ordering::Less))
+        let jacobian = |point: &mut BallPoint| self.wall.jacobian(model, point, &[]);
+        is_claimed && jacobian(point).is_some_and(|it| it.sign() == Some(Ordering::Less))
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {

@@ -100,6 +100,12 @@ impl Ball {
         self.radius
     }
 
+    /// The least and the largest number of the ball, each as a ball.
+    pub fn ends(self) -> [Self; 2] {
+        let (middle, radius) = (self.midpoint(), Self::double(self.radius));
+        [middle - radius, middle + radius]
+    }
+
     /// True if the radius is finite.
     pub fn is_bounded(self) -> bool {
         self.radius.is_finite()

@@ -161,8 +161,6 @@ impl ExpansionPoint for BallPoint {
 }
 
 impl RangePoint for BallPoint {
-    const CLOSE: f64 = 1e-60;
-
     fn of(point: &RealPoint) -> Self {
         let range =
             |value: &f64| decimal(*value).map_or(Ball::WHOLE, |number| Ball::rational(&number));
@@ -175,25 +173,12 @@ impl RangePoint for BallPoint {
         range.sign()
     }
 
-    fn midpoint(range: Ball) -> Ball {
-        range.midpoint()
-    }
-
     fn nearest(range: Ball) -> f64 {
         range.nearest()
     }
 
     fn radius(range: Ball) -> f64 {
         range.radius()
-    }
-
-    fn ends(range: Ball) -> [Ball; 2] {
-        let (middle, radius) = (range.midpoint(), Ball::double(range.radius()));
-        [middle - radius, middle + radius]
-    }
-
-    fn widened(range: Ball, distance: f64) -> Ball {
-        range.widened(distance)
     }
 }
 

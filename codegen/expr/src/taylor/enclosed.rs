@@ -13,9 +13,6 @@ use crate::rational::Rational;
 
 /// A point whose numbers are ranges. Each range contains the exact number.
 pub trait RangePoint: ExpansionPoint + Clone {
-    /// Relative accuracy of a number after some operations, with a margin.
-    const CLOSE: f64;
-
     /// The point whose coordinates are the shortest decimal numbers that round to those of `point`. Printed coordinates
     /// are therefore exact.
     fn of(point: &RealPoint) -> Self;
@@ -23,20 +20,11 @@ pub trait RangePoint: ExpansionPoint + Clone {
     /// Common sign of all numbers in the range; `None` if it contains 0 or numbers of both signs.
     fn sign(range: Range<Self>) -> Option<Ordering>;
 
-    /// A range around one number near the middle.
-    fn midpoint(range: Range<Self>) -> Range<Self>;
-
     /// A double near the middle.
     fn nearest(range: Range<Self>) -> f64;
 
-    /// Upper bound of the distance between numbers in the range and [`RangePoint::midpoint`].
+    /// Upper bound of the distance between numbers in the range and one near the middle.
     fn radius(range: Range<Self>) -> f64;
-
-    /// The least and the largest number, each as a range.
-    fn ends(range: Range<Self>) -> [Range<Self>; 2];
-
-    /// The range extended by `distance` at both ends.
-    fn widened(range: Range<Self>, distance: f64) -> Range<Self>;
 }
 
 type Range<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar;
@@ -173,8 +161,6 @@ impl ExpansionPoint for EnclosedPoint {
 }
 
 impl RangePoint for EnclosedPoint {
-    const CLOSE: f64 = 1e-13;
-
     fn of(point: &RealPoint) -> Self {
         let range = |value: &f64| {
             decimal(*value).map_or(Interval::WHOLE, |number| Interval::rational(&number))
@@ -193,24 +179,12 @@ impl RangePoint for EnclosedPoint {
         }
     }
 
-    fn midpoint(range: Interval) -> Interval {
-        Interval::point(Self::nearest(range))
-    }
-
     fn nearest(range: Interval) -> f64 {
         f64::midpoint(range.lo, range.hi)
     }
 
     fn radius(range: Interval) -> f64 {
         (range.hi - range.lo).next_up()
-    }
-
-    fn ends(range: Interval) -> [Interval; 2] {
-        [range.lo, range.hi].map(Interval::point)
-    }
-
-    fn widened(range: Interval, distance: f64) -> Interval {
-        range + Interval::new(-distance, distance)
     }
 }
 
