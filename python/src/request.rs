@@ -172,10 +172,10 @@ impl Request<'_> {
         model: &dyn AnyModel,
         form: Form,
     ) -> PyResult<Integrator> {
-        // Series need inputs that are constant during a step.
-        if self.control.is_some() && wanted == IntegratorChoice::Automatic {
-            return Ok(Integrator::Dop853);
-        }
+        let wanted = match self.control {
+            Some(_) => wanted.with_changing_inputs(),
+            None => wanted,
+        };
         let integrator = wanted.settle(model, form, self.tol);
         integrator.map_err(|error| refused(format!("tol: {error}")))
     }

@@ -415,7 +415,7 @@ pub struct RunArgs {
 }
 
 /// The integrator of a run, and the limits that end it before its end time.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct CourseArgs {
     /// Stop after this many impacts. Without --until the end time is then 3600, or the model's `until` if that is later.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]

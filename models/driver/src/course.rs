@@ -48,6 +48,14 @@ impl IntegratorChoice {
         }
     }
 
+    /// The same choice for a run whose inputs change within a step. Power series need inputs that do not.
+    pub const fn with_changing_inputs(self) -> Self {
+        match self {
+            Self::Automatic => Self::Given(Integrator::Dop853),
+            Self::Given(_) => self,
+        }
+    }
+
     /// The integrator for runs of a model in this form at this tolerance.
     ///
     /// # Errors

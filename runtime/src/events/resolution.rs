@@ -3,8 +3,9 @@
 //!
 //! The runtime does not know the terms. It estimates their sum by `sum_i |dh/dx_i| |x_i|`, from difference quotients:
 //! each component is changed by a small fraction of itself. At a zero of `h` the estimate agrees with the sum of the
-//! terms up to a factor of their degree. Conditions of surfaces have a similar tolerance ([`counts_beyond_rounding`]),
-//! because rounding decides on their boundary.
+//! terms up to a factor of their degree, but for terms that do not change: `sqrt(1 + x) - 1` near `x = 0`. The width of
+//! an enclosure at the state covers these. Conditions of surfaces have a similar tolerance
+//! ([`counts_beyond_rounding`]), because rounding decides on their boundary.
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;
@@ -19,7 +20,7 @@ const PART: f64 = 1.0 / (1 << 26) as f64;
 const UNITS: f64 = 16.0 * f64::EPSILON;
 
 /// Rounding error of a surface's gap at a state whose components were computed from values of these sizes. Evaluates
-/// the gaps once per component, once for time, and once more.
+/// the gaps once per component, once for time, and once more, and encloses the gap once.
 pub(crate) fn resolution<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -32,12 +33,12 @@ pub(crate) fn resolution<Sys: Impacting>(
     let here = system.gaps(t, state).as_slice()[surface];
     let later = system.gaps(t + PART * t, state).as_slice()[surface];
     let sum = sum_of_terms(system, surface, (t, state), here, sizes, evaluations);
-    UNITS * (sum + (later - here).abs() / PART)
+    UNITS * (sum + (later - here).abs() / PART) + evaluation_error(system, surface, t, state)
 }
 
 /// Width of the enclosure of a surface's gap at a state, which covers the rounding errors of its evaluation; 0 if it is
-/// not bounded. Unlike [`resolution`], it includes terms that do not change: the gap `sqrt(1 + x) - 1` near `x = 0`.
-pub(crate) fn evaluation_error<Sys: Impacting>(
+/// not bounded.
+fn evaluation_error<Sys: Impacting>(
     system: &Sys,
     surface: usize,
     t: f64,

@@ -1,12 +1,11 @@
 //! Departure from a touched surface at the start of a step: the motion leaves it, presses into it, or goes along it.
 
 use super::glance::Glance;
-use super::search::{FLAT, rounding_along};
+use super::search::FLAT;
 use super::tangency::{crosses_at_rest, is_accelerated, sinks_by_its_second_rate};
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
-use crate::events::resolution::evaluation_error;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -103,17 +102,13 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> bool {
         self.path.enclose();
-        let error = error_at_start(surface, step);
         let mut part = [0.0, LEAST_DEPARTURE];
         loop {
             let component = |i: usize| self.path.component(i, part);
             let time = self.path.time_model(part);
             let range = step.system.gap_along(surface, time, &component).range();
-            let mut evaluations = 0;
-            let rounding = rounding_along(surface, step, part[1], &self.sizes, &mut evaluations);
-            step.counters.event_evaluations += evaluations;
             step.counters.enclosures += 1;
-            let reach = FLAT * (rounding + error);
+            let reach = FLAT * self.rounding_at(surface, part[1], step);
             let keeps = match is_above {
                 true => range.lo >= -reach,
                 false => range.hi <= reach,
@@ -133,9 +128,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
     ) -> bool {
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
+        let rounding = self.rounding_at(surface, 1.0, step);
         let is_falling = |rate: f64| rate * glance.length < -rounding;
         glance.rate(surface).is_some_and(is_falling)
     }
@@ -150,18 +143,14 @@ impl<Sys: Impacting> Watch<Sys> {
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Change {
-        let mut evaluations = 0;
         let mut change = Change::None;
-        let error = error_at_start(surface, step);
-        step.counters.enclosures += 1;
         let mut octave = LEAST_DEPARTURE;
         while change == Change::None && octave < 1.0 {
             for part in [1.5 * octave, 2.0 * octave] {
                 let gaps = step.system.gaps(step.time(part), &step.state(part));
                 let gap = gaps.as_slice()[surface];
-                let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-                let rounding = rounding + error;
-                evaluations += 1;
+                step.counters.event_evaluations += 1;
+                let rounding = self.rounding_at(surface, part, step);
                 if gap < -2.0 * rounding {
                     change = Change::Sinks(part);
                     break;
@@ -173,7 +162,6 @@ impl<Sys: Impacting> Watch<Sys> {
             }
             octave *= 2.0;
         }
-        step.counters.event_evaluations += evaluations;
         change
     }
 
@@ -189,11 +177,7 @@ impl<Sys: Impacting> Watch<Sys> {
         if gap >= 0.0 {
             return false;
         }
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        let error = evaluation_error(step.system, surface, step.t_end(), step.end());
-        gap < -2.0 * (rounding + error)
+        gap < -2.0 * self.rounding_at(surface, 1.0, step)
     }
 }
 
@@ -207,12 +191,4 @@ fn pressed<Sys: Impacting, Step: Stepper<Sys>>(
         true => Outcome::TangentialCrossing { surface },
         false => Outcome::Contact { surface },
     }))
-}
-
-/// Rounding error with which the gap of a touched surface is evaluated at the start of the step, where it is 0.
-pub(super) fn error_at_start<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-) -> f64 {
-    evaluation_error(step.system, surface, step.t_start(), step.start())
 }

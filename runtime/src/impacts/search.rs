@@ -3,7 +3,7 @@
 
 use core::ops::ControlFlow;
 
-use super::departure::{Departure, error_at_start};
+use super::departure::Departure;
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
 use super::place::Place;
@@ -13,7 +13,7 @@ use super::watch::{Graze, Watch};
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::locate::{Bracket, Search, Start};
-use crate::events::resolution::{error_within, evaluation_error, resolution};
+use crate::events::resolution::{error_within, resolution};
 use crate::integrate::Stepper;
 use crate::integrate::controller::least_trial;
 use crate::math;
@@ -40,6 +40,14 @@ enum Found {
     /// A hit at this fraction of the step, with this gap rate.
     Hit(f64, f64),
     Unfinished(f64),
+}
+
+/// A fall of a gap that is no impact.
+enum Fall {
+    /// The surface does not count there, or the motion leaves it there.
+    Elsewhere,
+    /// The surface counts, but its gap rate is not negative.
+    Unapproached,
 }
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -164,7 +172,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 continue;
             }
-            let (part, after, nearest) = match found {
+            let places = match found {
                 Search::Clear => {
                     return match tangential {
                         Some(part) if self.is_sunk(surface, step, glance) => {
@@ -180,37 +188,68 @@ impl<Sys: Impacting> Watch<Sys> {
                     start = Start::behind(after, until);
                     continue;
                 }
-                Search::Sinks(part) => (part, part, part),
-                Search::Falls(bracket) => (bracket.before, bracket.after, bracket.nearest),
+                Search::Sinks(part) => Bracket {
+                    before: part,
+                    after: part,
+                    nearest: part,
+                },
+                Search::Falls(bracket) => bracket,
             };
             step.counters.crossings += 1;
-            if is_active(surface, step, part) {
-                if self.falls_at_start(surface, part, start, step) {
-                    match self.departure(surface, step, glance)? {
-                        Departure::Pressed(outcome) => return Err(outcome),
-                        Departure::Rises(_) if after < 1.0 => {
-                            start = Start::behind(after, until);
-                            continue;
-                        }
-                        _ => return Ok(Found::Nothing),
-                    }
+            match self.judge(surface, places, start, step, glance)? {
+                ControlFlow::Break(found) => return Ok(found),
+                ControlFlow::Continue(Fall::Unapproached) => {
+                    tangential = tangential.or(Some(places.after));
                 }
-                let places = Bracket {
-                    before: part,
-                    after,
-                    nearest,
-                };
-                if let Some((there, rate)) = self.approach(surface, step, places)? {
-                    return Ok(Found::Hit(there, rate));
-                }
-                tangential = tangential.or(Some(after));
+                ControlFlow::Continue(Fall::Elsewhere) => {}
             }
-            start = Start::behind(after, until);
-            if after >= 1.0 {
+            start = Start::behind(places.after, until);
+            if places.after >= 1.0 {
                 return Ok(Found::Nothing);
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// Decides a fall of the gap. Breaks with an impact, or where the motion goes along the surface; goes on behind the
+    /// fall if it is no impact.
+    fn judge<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        places: Bracket,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<ControlFlow<Found, Fall>, Outcome> {
+        if !is_active(surface, step, places.before) {
+            return Ok(ControlFlow::Continue(Fall::Elsewhere));
+        }
+        if self.falls_at_start(surface, places.before, start, step) {
+            return match self.departure(surface, step, glance)? {
+                Departure::Pressed(outcome) => Err(outcome),
+                Departure::Rises(_) if places.after < 1.0 => {
+                    Ok(ControlFlow::Continue(Fall::Elsewhere))
+                }
+                _ => Ok(ControlFlow::Break(Found::Nothing)),
+            };
+        }
+        Ok(match self.approach(surface, step, places)? {
+            Some((there, rate)) => ControlFlow::Break(Found::Hit(there, rate)),
+            None => ControlFlow::Continue(Fall::Unapproached),
+        })
+    }
+
+    /// Rounding error of a gap at a fraction of the step.
+    pub(super) fn rounding_at<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        part: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> f64 {
+        let mut evaluations = 0;
+        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        rounding
     }
 
     /// The fraction of the step at which the search on a touched surface ends because the rounding error of the gap hides
@@ -228,11 +267,9 @@ impl<Sys: Impacting> Watch<Sys> {
             Search::Pole(part) if is_touched => {
                 let (t, state) = (step.time(part), step.state(part));
                 let gap = step.system.gaps(t, &state).as_slice()[surface];
-                let mut evaluations = 1;
-                let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-                step.counters.event_evaluations += evaluations;
-                let error = evaluation_error(step.system, surface, t, &state);
-                (gap.abs() <= 2.0 * (rounding + error)).then_some(part)
+                step.counters.event_evaluations += 1;
+                let rounding = self.rounding_at(surface, part, step);
+                (gap.abs() <= 2.0 * rounding).then_some(part)
             }
             _ => None,
         }
@@ -275,11 +312,8 @@ impl<Sys: Impacting> Watch<Sys> {
         if part == 0.0 || slope > 0.0 {
             return part == 0.0;
         }
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-        let rounding = rounding + error_at_start(surface, step);
-        step.counters.event_evaluations += evaluations;
-        step.counters.enclosures += 2;
+        let rounding = self.rounding_at(surface, part, step);
+        step.counters.enclosures += 1;
         self.path.enclose();
         let (path, part) = (&self.path, [0.0, part]);
         let component = |i: usize| path.component(i, part);
@@ -331,9 +365,8 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         let gaps = step.system.gaps(step.time(part), &step.state(part));
         let gap = gaps.as_slice()[surface];
-        let mut evaluations = 1;
-        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
+        step.counters.event_evaluations += 1;
+        let rounding = self.rounding_at(surface, part, step);
         let counts = !self.is_passable(surface) && is_active(surface, step, part);
         if gap < -2.0 * rounding && counts {
             return Err(Outcome::StartsInside { surface, gap });

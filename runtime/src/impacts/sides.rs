@@ -7,12 +7,12 @@
 use core::cell::RefCell;
 
 use super::glance::{Glance, SAME_TIME};
-use super::search::{is_active, rounding_along};
+use super::search::is_active;
 use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
-use crate::events::resolution::{counts_beyond_rounding, evaluation_error};
+use crate::events::resolution::counts_beyond_rounding;
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
@@ -81,9 +81,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.path.refine(step)?;
         self.path.enclose();
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
+        let rounding = self.rounding_at(surface, 1.0, step);
         let drift = SAME_TIME * (self.rates.as_slice()[surface] * step.t_end()).abs();
         let floor = 2.0 * rounding + drift;
         let step = RefCell::new(step);
@@ -140,8 +138,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let is_wall = !self.is_passable(surface);
             if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
                 let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                let error = evaluation_error(now.system, surface, now.t, now.state);
-                let rounding = rounding(now, surface, &self.sizes) + error;
+                let rounding = rounding(now, surface, &self.sizes);
                 if gap >= -2.0 * rounding - drift {
                     self.gaps.as_mut_slice()[surface] = 0.0;
                 } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)

@@ -5,8 +5,7 @@ mod document;
 pub mod summary;
 
 use dalembert_driver::accuracy::Verified;
-use dalembert_driver::course::IntegratorChoice;
-use dalembert_driver::{AnyModel, Ending, Grid, Integrator, Origin, Settings};
+use dalembert_driver::{AnyModel, Ending, Grid, Origin, Settings};
 
 use crate::args::SimulateArgs;
 use crate::entry::Entry;
@@ -151,13 +150,12 @@ pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, Cl
         None if description.view.is_some() => Some(Source::View),
         None => Some(Source::Coordinates),
     };
-    let mut settings = run_request::course(model, &args.run, &args.course)?;
-    if args.inputs.is_some() && args.course.integrator == IntegratorChoice::Automatic {
-        // Series need inputs that are constant during a step.
-        settings.integrator = Integrator::Dop853;
+    let mut course = args.course.clone();
+    if args.inputs.is_some() {
+        course.integrator = course.integrator.with_changing_inputs();
     }
     Ok(Prepared {
-        settings,
+        settings: run_request::course(model, &args.run, &course)?,
         origin: initial_state(model, &args.run.state)?,
         inputs: input_table::given(args.inputs.as_deref(), args.between, model)?,
         source,
