@@ -462,3 +462,74 @@ fn a_point_on_top_of_a_ball_is_held_until_it_leaves_it() {
         }
     }
 }
+
+/// A ball above a planet whose radius hides all but the first nine digits of a gap of one metre.
+static PLANET: Text = Text::new(
+    "Planet {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - 9.81*y;
+        impacts { ground: sqrt(x^2 + (y + 6.4e6)^2) - 6.4e6 >= 0 => restitution(1/2); }
+    }",
+);
+
+/// The rounding error of the gap comes from its constant term. Hops below it are impacts no longer.
+#[test]
+fn hops_on_a_planet_accumulate_where_rounding_hides_them() {
+    let planet = PLANET.model();
+    let right = 3.0 * (2.0 * 10.0_f64 / 9.81).sqrt();
+    for &integrator in Integrator::every() {
+        let course = Course::new(&planet, &[0.0, 10.0], &[0.0, 0.0], 10.0).tol(1e-12);
+        let end = course.step(1e-2).run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), end.outcome);
+        let Outcome::Zeno { t, surface: 0 } = end.outcome else {
+            panic!("{case}")
+        };
+        // The last hops begin with about 1e-3, and the gap is known to 1e-9.
+        assert!((t - right).abs() < 1e-6, "{case}, not {right}");
+        let course = Course::new(&planet, &[0.0, 10.0], &[0.0, 0.0], 10.0).tol(1e-12);
+        let end = course.step(1e-2).resting().run(Setting::free(integrator));
+        assert_eq!((end.outcome, end.holds.len()), (Outcome::Done, 1), "{case}");
+    }
+}
+
+/// A ledge that ends at `x = 1`, above a floor.
+static LEDGE: Text = Text::new(
+    "Ledge {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts {
+            floor: y >= 0 => impact_plastic;
+            ledge: y >= 1/2 when x < 1 => impact_plastic;
+        }
+    }",
+);
+
+/// A point slides over the ledge from the start, or after it fell on it from 9/16 at `t = 1/sqrt(8)`. It leaves the ledge
+/// at its end and reaches the floor one second later.
+#[test]
+fn a_surface_holds_only_where_its_condition_holds() {
+    let ledge = LEDGE.model();
+    for &integrator in Integrator::every() {
+        for height in [0.5, 0.5625] {
+            let course = Course::new(&ledge, &[0.0, height], &[1.0, 0.0], 3.0).tol(1e-12);
+            let end = course.step(1e-2).resting().run(Setting::free(integrator));
+            let case = format!("{}, {height}: {:?}", integrator.name(), end.holds);
+            assert_eq!(end.outcome, Outcome::Done, "{case}");
+            let [hold, release, landing] = &end.holds[..] else {
+                panic!("{case}")
+            };
+            assert_eq!(
+                [hold, release, landing].map(|it| it.begins),
+                [true, false, true]
+            );
+            assert_eq!([hold, release, landing].map(|it| it.surface), [1, 1, 0]);
+            assert!((release.t - 1.0).abs() < 1e-9, "{case}");
+            assert!((landing.t - 2.0).abs() < 1e-9, "{case}");
+            assert!(
+                (end.q[0] - 3.0).abs() < 1e-9 && end.q[1].abs() < 1e-9,
+                "{case}: {:?}",
+                end.q
+            );
+        }
+    }
+}

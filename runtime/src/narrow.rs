@@ -53,8 +53,7 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     if step.length() <= SAME_MOMENT * step.t_end().abs() {
         return Ok(1.0);
     }
-    let mut path = Path::new(step.start());
-    path.follow(step)?;
+    let path = assumed(step)?;
     let mut along = Along {
         system: step.system,
         path: &path,
@@ -113,6 +112,30 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
         *entry = tolerance.absolute() * *entry + tolerance.relative() * size;
     }
     allowed
+}
+
+/// The path of a step as its result assumes it: the cubic through its ends, with an error bound from the rates inside
+/// the step, as far as the cubic makes them plausible. The dense output, for methods without rates inside.
+///
+/// NOTE: a stage without weight in the result, or one of the dense output alone, may have met a force that the result has
+/// not. It would pass for one that the step assumed.
+fn assumed<Sys: System, Step: Stepper<Sys>>(
+    step: &mut StepView<'_, Sys, Step>,
+) -> Result<Path<Sys::State>, Outcome> {
+    let mut path = Path::new(step.start());
+    let Some(mut sway) = step.stepper.sway() else {
+        path.follow(step)?;
+        return Ok(path);
+    };
+    path.take_ends(step, &sway.zeroed());
+    let allowed = allowed(step, &path);
+    for (i, entry) in sway.as_mut_slice().iter_mut().enumerate() {
+        let rate = path.rated(i, [0.0, 1.0]).rate;
+        let plausible = OF_CHANGE * rate.width() + OF_SIZE * rate.magnitude();
+        *entry = entry.min(plausible + allowed.as_slice()[i]);
+    }
+    path.take_ends(step, &sway);
+    Ok(path)
 }
 
 /// Width of the range of each rate over the whole step. Rates are with respect to the fraction of the step.

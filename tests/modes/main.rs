@@ -421,3 +421,41 @@ fn a_slide_ends_where_one_side_leads_away() {
         "{q:?}"
     );
 }
+
+/// Two fields that lead to the line `x = 0` from both sides, along which transitions count up to `y = 1`.
+static BOUNDED: Text = Text::new(
+    "Bounded {
+        coordinates { x; y; }
+        modes {
+            right { field { dot(x) = -1; dot(y) = 1; } }
+            left { field { dot(x) = 1; dot(y) = 1; } }
+        }
+        transitions {
+            go: right -> left when x <= 0 when y < 1;
+            back: left -> right when x >= 0 when y < 1;
+        }
+    }",
+);
+
+/// The motion goes on in the mode of the state, through the line.
+#[test]
+fn a_slide_ends_where_its_transitions_no_longer_count() {
+    let field = BOUNDED.model();
+    for &integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Rk4].iter() {
+        let state = state(&field, &[0.5, 0.0], &[0.0; 2]);
+        let mut slides = Slides(Vec::new());
+        let course = Course::from_state(&field, state, 3.0).tol(1e-12).step(1e-2);
+        let run = course.observed(integrator, &mut slides);
+        assert_eq!(run.outcome, Outcome::Done);
+        let times = slides.0;
+        let is_seen = matches!(times[..], [(begin, true), (end, false)]
+            if (begin - 0.5).abs() < 1e-9 && (end - 1.0).abs() < 1e-9);
+        assert!(is_seen, "{}: {times:?}", integrator.name());
+        let q = field.position(&run.state);
+        let q = q.as_slice();
+        assert!(
+            (q[0].abs() - 2.0).abs() < 1e-9 && (q[1] - 3.0).abs() < 1e-9,
+            "{q:?}"
+        );
+    }
+}

@@ -294,3 +294,33 @@ fn a_blow_by_a_product_is_felt() {
 fn one_mode_with_narrow_rates_is_enough() {
     assert!(ROUTE.model().has_narrow_rates());
 }
+
+/// A point with a unit impulse of width `s` at the time `c`.
+static STRUCK_SOMETIME: Text = Text::new(
+    "StruckSometime {
+        coordinates { x; }
+        parameters { s > 0 = 0.1; c = 1; }
+        lagrangian = dot(x)^2/2;
+        forces { blow: exp(-((t - c)/s)^2)/(s*sqrt(pi))*d(x); }
+    }",
+);
+
+/// Some stages of Runge-Kutta methods have no weight in the result. One of them meets the impulse at some of these times.
+#[test]
+fn an_impulse_acts_whichever_stage_of_a_step_meets_it() {
+    let adaptive = Integrator::every().iter().filter(|one| one.is_adaptive());
+    for &integrator in adaptive {
+        for (tol, width) in [(1e-6, 1e-2), (1e-8, 1e-4), (1e-10, 1e-3), (1e-12, 1e-4)] {
+            for k in 0..64 {
+                let time = 0.8 + 0.05 * f64::from(k);
+                let model = STRUCK_SOMETIME.with([("s", width), ("c", time)]);
+                let end = Course::new(&model, &[0.0], &[1.0], 6.0).tol(tol);
+                let run = end.observed(integrator, &mut ());
+                let name = integrator.name();
+                assert_eq!(run.outcome, Outcome::Done);
+                let speed = run.state.as_ref()[1];
+                assert!((speed - 2.0).abs() < 0.05, "{name}, {tol}, {time}: {speed}");
+            }
+        }
+    }
+}

@@ -153,7 +153,8 @@ impl<S: StateVector> Path<S> {
         (self.is_dense, self.is_enclosed) = (true, false);
     }
 
-    fn take_ends<Sys: System<State = S>, Step: Stepper<Sys>>(
+    /// Sets the path to the cubic through the ends of a step, with an error bound of `sway` for each component.
+    pub(crate) fn take_ends<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
         sway: &S,

@@ -98,17 +98,37 @@ pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
     state: &Sys::State,
     sizes: &Sys::State,
 ) -> bool {
+    is_certain(system, (surface, true), t, state, sizes)
+}
+
+/// Same as [`counts_beyond_rounding`], for a surface that does not count.
+pub(crate) fn is_off_beyond_rounding<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    t: f64,
+    state: &Sys::State,
+    sizes: &Sys::State,
+) -> bool {
+    is_certain(system, (surface, false), t, state, sizes)
+}
+
+/// True if rounding does not decide that a surface `counts`, or that it does not.
+fn is_certain<Sys: Impacting>(
+    system: &Sys,
+    (surface, counts): (usize, bool),
+    t: f64,
+    state: &Sys::State,
+    sizes: &Sys::State,
+) -> bool {
     let part = 2.0 * UNITS * (1.0 + system.state_len() as f64);
     let later = [0.0, part * t, -part * t];
-    let counts_throughout = later
-        .into_iter()
-        .all(|later| system.surface_active(surface, t + later, state));
-    counts_throughout
+    let is_so = |t: f64, state: &Sys::State| system.surface_active(surface, t, state) == counts;
+    later.into_iter().all(|later| is_so(t + later, state))
         && (0..system.state_len()).all(|i| {
             [part, -part].into_iter().all(|part| {
                 let mut moved = *state;
                 moved.as_mut_slice()[i] += part * sizes.as_slice()[i].abs();
-                system.surface_active(surface, t, &moved)
+                is_so(t, &moved)
             })
         })
 }

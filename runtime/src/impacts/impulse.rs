@@ -564,7 +564,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         match self.watch.look(step) {
             Ok(Some(theta)) if self.resting.is_none() => Ok(Some(self.watch.meet(theta, step))),
             Ok(hit) if self.resting.is_none() => Ok(hit),
-            Ok(hit) => self.resting.look(hit, step),
+            Ok(hit) => {
+                let end = self.watch.end_of_hold(hit.unwrap_or(1.0), step)?;
+                self.resting.look(hit, end, step)
+            }
             Err(Outcome::Contact { surface }) => self.press(surface, step),
             // At rest on the surface: a force that grows from 0 presses.
             Err(Outcome::TangentialCrossing { surface }) if self.may_rest(surface) => {

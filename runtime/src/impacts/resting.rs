@@ -32,7 +32,7 @@ enum Turn {
     Nothing,
     /// The motion presses into this surface.
     Press(usize),
-    /// The contact force of this surface would have to pull.
+    /// The contact force of this surface would have to pull, or the surface no longer counts.
     Leave(usize),
 }
 
@@ -90,13 +90,21 @@ impl<G: StateVector> Resting<G> {
         Ok(())
     }
 
-    /// The earlier of a hit and the first release in a step.
+    /// The earliest of a hit, the first release in a step, and `end`: where a held surface no longer counts.
     pub(super) fn look<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
         hit: Option<f64>,
+        end: Option<(f64, usize)>,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
-        match first_release(&self.held, step)? {
+        let released = first_release(&self.held, step)?;
+        let first = match end {
+            Some((part, surface)) if released.is_none_or(|(before, _)| part < before) => {
+                Some((part, Some(surface)))
+            }
+            _ => released,
+        };
+        match first {
             Some((part, surface)) if hit.is_none_or(|hit| part < hit) => {
                 if let Some(surface) = surface {
                     self.count(surface, step.time(part))?;

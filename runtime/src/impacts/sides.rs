@@ -1,5 +1,6 @@
 //! Sides of surfaces: detects that a surface becomes active (its conditions begin to hold) while the motion is behind
-//! it, and decides the side of a motion that is on a surface within rounding.
+//! it, or ceases to be active while it holds the motion, and decides the side of a motion that is on a surface within
+//! rounding.
 //!
 //! Behind a wall that is not active, the motion is free. Gap and conditions are enclosed along the step. A stretch on
 //! which the gap is not negative, or on which the conditions do not hold, is free; others are halved ([`onset`]).
@@ -12,7 +13,7 @@ use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
-use crate::events::resolution::counts_beyond_rounding;
+use crate::events::resolution::{counts_beyond_rounding, is_off_beyond_rounding};
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
@@ -116,17 +117,81 @@ impl<Sys: Impacting> Watch<Sys> {
         let component = |i: usize| self.path.component(i, part);
         let time = self.path.time_model(part);
         let gap = step.system.gap_along(surface, time, &component);
-        if gap.range().lo >= -floor {
-            return true;
-        }
+        gap.range().lo >= -floor || self.counts_on(part, surface, step) == Some(false)
+    }
+
+    /// True if a surface counts all along a part of the step, false if it counts nowhere on it; `None` if neither is
+    /// certain.
+    fn counts_on<Step: Stepper<Sys>>(
+        &self,
+        part: [f64; 2],
+        surface: usize,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Option<bool> {
+        let component = |i: usize| self.path.component(i, part);
+        let time = self.path.time_model(part);
         let about = |value: f64, size: f64| {
             TaylorModel::steady(Interval::point(value).widened(UNITS * size.abs()))
         };
         let (t, state) = (step.t_end(), step.end());
         let rounded = |i: usize| about(state.as_slice()[i], self.sizes.as_slice()[i]);
-        let counts =
-            (step.system).counts_along(surface, (time, &component), (about(t, t), &rounded));
-        counts == Some(false)
+        (step.system).counts_along(surface, (time, &component), (about(t, t), &rounded))
+    }
+
+    /// The first fraction of the step, up to `reach`, at which a surface that holds the motion no longer counts, and the
+    /// surface.
+    pub(super) fn end_of_hold<Step: Stepper<Sys>>(
+        &mut self,
+        reach: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<(f64, usize)>, Outcome> {
+        let mut first: Option<(f64, usize)> = None;
+        let held = self.held;
+        let across = held.slide().map(|slide| slide.across);
+        for surface in held.iter() {
+            // The condition of the other transition holds or fails in the other mode.
+            if step.system.has_conditions(surface) && Some(surface) != across {
+                step.prepare()?;
+                self.path.follow_dense(step);
+                let until = first.map_or(reach, |(part, _)| part);
+                let part = self.ceases_to_count(surface, until, step);
+                let part = part.filter(|part| *part < until || first.is_none());
+                first = part.map(|part| (part, surface)).or(first);
+            }
+        }
+        if let Some(slide) = held.slide()
+            && step.system.has_conditions(slide.across)
+        {
+            step.prepare()?;
+            let until = first.map_or(reach, |(part, _)| part);
+            let part = slide.end_across(until, step);
+            let part = part.filter(|part| *part < until || first.is_none());
+            first = part.map(|part| (part, slide.across)).or(first);
+        }
+        Ok(first)
+    }
+
+    /// The first fraction of the step, up to `reach`, at which a surface does not count, by more than rounding errors.
+    fn ceases_to_count<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        reach: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Option<f64> {
+        let is_off = |part: f64, step: &StepView<'_, Sys, Step>| {
+            let (t, state) = (step.time(part), step.state(part));
+            is_off_beyond_rounding(step.system, surface, t, &state, &self.sizes)
+        };
+        if is_off(0.0, step) {
+            return Some(0.0);
+        }
+        let step = RefCell::new(step);
+        let counts = |part| {
+            let step = &mut *step.borrow_mut();
+            step.counters.enclosures += 1;
+            self.counts_on(part, surface, step) == Some(true)
+        };
+        onset(reach, counts, |part| is_off(part, &step.borrow())).map(|found| found.after)
     }
 
     /// Refuses a gap that is negative beyond rounding if the surface is active. Sets a gap that is negative within

@@ -7,13 +7,16 @@
 //! ```
 //!
 //! with the gap rates `r_b` and `r_a` of the transitions `back` and `across` ([`Slide`]), each in the mode that the
-//! transition leaves. Both are negative. The sliding mode ends where one of them is 0; the motion continues in the mode
-//! with that rate.
+//! transition leaves. Both are negative. The sliding mode ends where one of them is 0, or where one of the transitions
+//! no longer counts; the motion continues in the mode that this transition leaves.
 //!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 
 use crate::contract::Impacting;
+use crate::effects::StepView;
 use crate::error::Fault;
+use crate::events::first::narrowed;
+use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -43,6 +46,26 @@ impl Slide {
         state: &Sys::State,
     ) -> Result<Sys::State, Outcome> {
         Ok(system.landing(self.back, t, state)?.state)
+    }
+
+    /// The first fraction of the step, up to `reach`, at which the transition out of the other mode does not count,
+    /// if it does not count at `reach`.
+    pub(super) fn end_across<Sys: Impacting, Step: Stepper<Sys>>(
+        self,
+        reach: f64,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Option<f64> {
+        let (system, across) = (step.system, self.across);
+        let ceases = |part: f64| {
+            let t = step.time(part);
+            let other = self.across(system, t, &step.state(part));
+            other.is_ok_and(|other| !system.surface_active(across, t, &other))
+        };
+        match (ceases(0.0), ceases(reach)) {
+            (true, _) => Some(0.0),
+            (false, true) => Some(narrowed([0.0, reach], ceases).after),
+            (false, false) => None,
+        }
     }
 
     fn sides<Sys: Impacting>(
