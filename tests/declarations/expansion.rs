@@ -153,7 +153,7 @@ fn assert_expands_in_time(name: &str, source: &str, coordinates: usize) {
     }
 }
 
-/// What takes too long, given the expansions without and with claims.
+/// Description of a time over its bound, given the expansions without and with claims; `None` if there is none.
 fn over_its_bound(bare: &Expansion, whole: &Expansion, coordinates: usize) -> Option<String> {
     let Expansion {
         time, to_reading, ..

@@ -5,7 +5,7 @@
 //! each component is changed by a small fraction of itself. At a zero of `h` the estimate agrees with the sum of the
 //! terms up to a factor of their degree, but for terms that do not change: `sqrt(1 + x) - 1` near `x = 0`. The width of
 //! an enclosure at the state covers these. Conditions of surfaces have a similar tolerance
-//! ([`counts_beyond_rounding`]), because rounding decides on their boundary.
+//! ([`is_beyond_rounding`]), because rounding decides on their boundary.
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;
@@ -89,31 +89,9 @@ pub(crate) fn error_within<Sys: Impacting>(
     tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)
 }
 
-/// True if a surface counts at this state, and still counts after any one component, or time, is changed in either
-/// direction by a bound of the total rounding error. `sizes` are the sizes of the components.
-pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
-    system: &Sys,
-    surface: usize,
-    t: f64,
-    state: &Sys::State,
-    sizes: &Sys::State,
-) -> bool {
-    is_certain(system, (surface, true), t, state, sizes)
-}
-
-/// Same as [`counts_beyond_rounding`], for a surface that does not count.
-pub(crate) fn is_off_beyond_rounding<Sys: Impacting>(
-    system: &Sys,
-    surface: usize,
-    t: f64,
-    state: &Sys::State,
-    sizes: &Sys::State,
-) -> bool {
-    is_certain(system, (surface, false), t, state, sizes)
-}
-
-/// True if rounding does not decide that a surface `counts`, or that it does not.
-fn is_certain<Sys: Impacting>(
+/// True if a surface `counts` at this state, or does not, as asked, and still so after any one component, or time, is
+/// changed in either direction by a bound of the total rounding error. `sizes` are the sizes of the components.
+pub(crate) fn is_beyond_rounding<Sys: Impacting>(
     system: &Sys,
     (surface, counts): (usize, bool),
     t: f64,

@@ -13,7 +13,7 @@ use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
-use crate::events::resolution::{counts_beyond_rounding, is_off_beyond_rounding};
+use crate::events::resolution::is_beyond_rounding;
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
@@ -91,9 +91,9 @@ impl<Sys: Impacting> Watch<Sys> {
             step.counters.event_evaluations += 1;
             gap_at(surface, step, part) < -floor
                 && is_active(surface, step, part)
-                && counts_beyond_rounding(
+                && is_beyond_rounding(
                     step.system,
-                    surface,
+                    (surface, true),
                     step.time(part),
                     &step.state(part),
                     &self.sizes,
@@ -180,7 +180,7 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Option<f64> {
         let is_off = |part: f64, step: &StepView<'_, Sys, Step>| {
             let (t, state) = (step.time(part), step.state(part));
-            is_off_beyond_rounding(step.system, surface, t, &state, &self.sizes)
+            is_beyond_rounding(step.system, (surface, false), t, &state, &self.sizes)
         };
         if is_off(0.0, step) {
             return Some(0.0);
@@ -206,8 +206,13 @@ impl<Sys: Impacting> Watch<Sys> {
                 let rounding = rounding(now, surface, &self.sizes);
                 if gap >= -2.0 * rounding - drift {
                     self.gaps.as_mut_slice()[surface] = 0.0;
-                } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)
-                {
+                } else if is_beyond_rounding(
+                    now.system,
+                    (surface, true),
+                    now.t,
+                    now.state,
+                    &self.sizes,
+                ) {
                     return Err(Outcome::StartsInside { surface, gap });
                 }
             }
