@@ -421,6 +421,9 @@ class Model:
             self.forces = [compile_all(item) for item in motion["forces"]]
         self.constraints = [self.constraint(item) for item in content["constraints"]]
         self.is_nonlinear = any(item["nonlinear"] is not None for item in content["constraints"])
+        #: Left sides of the position equations.
+        self.levels = compile_all(item["position"] for item in content["constraints"] if item["position"] is not None)
+        self.has_only_positions = 0 < len(self.levels) == len(self.constraints)
         self.surfaces = content["surfaces"]
         #: Indices of the surfaces at which the motion does not end.
         self.acting = [index for index, surface in enumerate(self.surfaces) if surface["law"] != "stop"]
@@ -575,7 +578,25 @@ class Model:
         state += [self.parameter(source, item) for item in self.parameters]
         for name, value in given.items():
             state[self.names.places[name]] = Decimal(repr(value))
-        return self.on_constraints(state)
+        return self.on_constraints(self.at_zeros(self.levels, state))
+
+    def at_zeros(self, functions, state):
+        """The state with a position near by at which functions of the position are 0 (Newton's method)."""
+        values = lambda state: [function(state) for function in functions]
+        for _ in range(60 if functions else 0):
+            excess = values(state)
+            if all(abs(item) < Decimal(10) ** -(self.precision.digits - 30) for item in excess):
+                return state
+            columns = [self.derivative(values, state, self.along(state, 0, self.axis(i))) for i in range(self.n)]
+            slopes = [list(row) for row in zip(*columns)]
+            square = [[dot(a, b) for b in slopes] for a in slopes]
+            q = self.positions(state)
+            for factor, slope in zip(solve(square, excess), slopes):
+                q = moved(q, slope, -factor)
+            state = [state[0], *q, *state[1 + self.n:]]
+        if functions:
+            raise Unsuitable("positions that satisfy the equations were not reached")
+        return state
 
     def parameter(self, source, item):
         assumption, default = item["assumption"], item["default"]
@@ -863,17 +884,8 @@ def arrived(model, surface, state):
     """A state on the surface near this one that approaches it, with the gradient of the gap and its rate."""
     gap = model.names.compile(surface["gap"])
     gradient = lambda s: [model.derivative(gap, s, model.along(s, 0, model.axis(i))) for i in range(model.n)]
-    for _ in range(60):
-        value, slope = gap(state), gradient(state)
-        square = dot(slope, slope)
-        if square == 0:
-            raise Unsuitable("a gap without a slope")
-        if abs(value) < Decimal(10) ** -(model.precision.digits - 30):
-            break
-        q = moved(model.positions(state), slope, -value / square)
-        state = [state[0], *q, *state[1 + model.n:]]
-    else:
-        raise Unsuitable("the surface was not reached")
+    state = model.at_zeros([*model.levels, gap], state)
+    slope = gradient(state)
     state = model.on_constraints(state)
     if not counts(model, surface, state):
         raise Unsuitable("the surface does not count here")
@@ -1250,7 +1262,7 @@ def check_form(model, claim, source):
     """The form is constant on vectors that the motion carries along, between surfaces and through each of them."""
     def terms_of(mode):
         return [(mode.claimed(item["coefficient"]), [mode.claimed(f) for f in item["differentials"]]) for item in claim["terms"]]
-    return kept_form(model, terms_of, source)
+    return kept_form(model, terms_of, source, model.has_only_positions)
 
 
 def along_leaves(chart, vectors):
@@ -1547,12 +1559,18 @@ def check_symmetry(model, claim, source):
         rest = change(model.with_velocities(state, [Decimal(0)] * model.n))
         return [change(model.with_velocities(state, model.axis(i))) - rest for i in range(model.n)]
 
-    def defects(state):
-        found, linear = [], gauge_at(state)
-        found.append(change(state) - dot(linear, model.velocities(state)) - change(
-            model.with_velocities(state, [Decimal(0)] * model.n)))
+    def lagrangian_defects(state):
+        linear = gauge_at(state)
+        found = [change(state) - dot(linear, model.velocities(state)) - change(
+            model.with_velocities(state, [Decimal(0)] * model.n))]
         slopes = [model.derivative(gauge_at, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
-        found += [slopes[i][j] - slopes[j][i] for i in range(model.n) for j in range(i)]
+        return found + [slopes[i][j] - slopes[j][i] for i in range(model.n) for j in range(i)]
+
+    def defects(state):
+        # Under position equations alone, L may change at positions and velocities that break them.
+        is_kept = model.has_only_positions and is_small(change(state), 1, 20)
+        found = [] if is_kept else lagrangian_defects(state)
+        found += [model.derivative(level, state, model.along(state, 0, at(state))) for level in model.levels]
         forms, m = model.forms_at(state), len(model.constraints)
         if not m:
             return found
@@ -1624,6 +1642,7 @@ def check_integrable(model, claim, source):
         z, rows = chart.coordinates(), []
         for function in functions:
             axes = [[Decimal(int(k == i)) for k in range(chart.size)] for i in range(1, chart.size)]
+            axes = along_leaves(chart, axes) if model.has_only_positions else axes
             rows.append([model.derivative(lambda at: function(chart.at(at)), z, axis) for axis in axes])
         return len(eliminated(rows, chart.size - 1)[1])
     if min(states(model, source, rank)) < len(functions):

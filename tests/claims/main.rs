@@ -7,6 +7,7 @@
 //! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence of a density on many systems |
 //! | `invariance.rs`, `atoms.rs` | independence of verdicts from the notation; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | true and false claims of models; impacts |
+//! | `positions.rs` | models with position equations |
 //! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |
 //! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by motions |
 
@@ -20,6 +21,7 @@ mod golden_verdicts;
 mod impacts;
 mod invariance;
 mod momentum;
+mod positions;
 mod proved_means_proved;
 mod reference;
 mod singular_volumes;

@@ -1,13 +1,14 @@
 //! Questions about states before an impact, answered on every component of the surface.
 
-use dalembert_expr::{BallPoint, ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint};
+use dalembert_expr::{BallPoint, ExpansionPoint, ExprId, RangePoint, RealPoint};
 
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
+use super::locus::Locus;
 use super::passage::Passage;
 use super::sample::Sample;
-use super::wall::{Place, Wall};
+use super::wall::Wall;
 use crate::model::Model;
 
 /// Relative difference below which two numbers look alike in a message.
@@ -48,8 +49,7 @@ pub(super) trait AtImpact {
     fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 
-/// Evidence on a sum at the states before an impact at a wall. A sum that vanishes everywhere vanishes on the surface;
-/// otherwise every component of the surface is examined.
+/// Evidence on a sum at the states before an impact at a wall.
 pub(super) fn evidence_at_impact(
     model: &Model,
     wall: &Wall,
@@ -57,24 +57,12 @@ pub(super) fn evidence_at_impact(
     question: &impl AtImpact,
     seed: u64,
 ) -> Evidence {
-    let at = |place| {
-        let collision = Collision {
-            wall,
-            dynamics,
-            question,
-            place,
-        };
-        evidence(model, &collision, seed)
+    let collision = Collision {
+        wall,
+        dynamics,
+        question,
     };
-    let everywhere = at(Place::Anywhere);
-    if everywhere.vanishes == Some(true) {
-        return everywhere;
-    }
-    let first = at(Place::First);
-    if first.vanishes != Some(true) {
-        return first;
-    }
-    at(Place::Second)
+    evidence(model, &collision, seed)
 }
 
 /// Two values with their names, and their difference where they look alike.
@@ -121,12 +109,11 @@ pub(super) fn after_and_before<P: ExpansionPoint>(
     Some([new, old])
 }
 
-/// A question at one place of the surface.
+/// A question at the surface.
 struct Collision<'c, Q> {
     wall: &'c Wall,
     dynamics: &'c Dynamics,
     question: &'c Q,
-    place: Place,
 }
 
 impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
@@ -139,17 +126,12 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         roots
     }
 
-    fn hides_relations(&self, model: &Model) -> bool {
-        self.place != Place::Anywhere && self.wall.hides(&model.pool, &self.roots())
-    }
-
     fn dynamics(&self) -> Option<&Dynamics> {
         Some(self.dynamics)
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.wall.settle(model, point, self.place)?;
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    fn positions(&self) -> Option<&Locus> {
+        Some(self.wall.locus())
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
@@ -172,7 +154,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
 
     fn enclosed(&self, model: &Model, point: &RealPoint) -> Option<BallPoint> {
         let mut point = BallPoint::of(point);
-        self.wall.enclose(model, &mut point)?;
+        self.wall.locus().enclose(model, &mut point)?;
         self.dynamics.motion(&model.pool, &mut point, None)?;
         let is_met = self.wall.is_met(model, &mut point);
         (is_met && self.question.is_certain(model, &mut point.clone())).then_some(point)

@@ -14,6 +14,7 @@ use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, S
 use super::branches::{Branch, branches};
 use super::frame::{choose_dependent, column};
 use super::linear::{Matrix, dot, solve, transpose};
+use super::locus::Locus;
 use crate::mechanics::{ConstraintForm, Derivation};
 use crate::model::Model;
 
@@ -31,6 +32,8 @@ pub struct Dynamics {
     branches: Vec<Branch>,
     /// N rows of N + 1 entries, `g` and then `f - drift`, followed by one row of the M curvatures.
     motion: Rows,
+    /// Positions that satisfy the position equations.
+    positions: Locus,
     q: Vec<SymbolId>,
     qdot: Vec<SymbolId>,
     time: SymbolId,
@@ -121,6 +124,7 @@ impl Dynamics {
             branches: Vec::new(),
             forms: Rows::new(&model.pool, forms),
             motion: Rows::new(&model.pool, motion),
+            positions: Locus::of_model(model),
             q: model
                 .coordinates
                 .iter()
@@ -177,9 +181,15 @@ impl Dynamics {
         Self {
             forms: replaced(&self.forms),
             motion: replaced(&self.motion),
+            positions: self.positions.substituted(pool, replacements),
             branches,
             ..self.clone()
         }
+    }
+
+    /// Positions that satisfy the position equations.
+    pub(super) fn positions(&self) -> &Locus {
+        &self.positions
     }
 
     /// `eta^a` and `eta^a_0` by rows; `g` and `f - drift` by rows, then the row of the curvatures.

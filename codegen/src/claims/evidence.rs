@@ -1,19 +1,18 @@
 //! Evidence on whether a quantity vanishes at all states: residues at random states, and values at real states.
 
 use dalembert_expr::{
-    Arithmetic, Ball, BallPoint, Branches, Covered, ExpansionPoint, ExprId, ModularPoint, Node,
-    Pool, Profile, RangePoint, RealPoint, SymbolId,
+    Arithmetic, Ball, BallPoint, ExpansionPoint, ExprId, ModularPoint, Node, Pool, RangePoint,
+    RealPoint, SymbolId,
 };
 
 use super::dynamics::{Dynamics, Number};
-use super::exactness::{branches_of, sample_points};
 use super::finding::{Certificate, Verdict, Witness, digits};
+use super::locus::Locus;
+use super::residues::{Residues, residues};
 use super::sample::{self, Sample};
-use super::undecided::{LARGEST_CHANCE, Undecided};
+use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Number of random states at which a sum must vanish, and number on each branch if there are several.
-const STATES: (usize, usize) = (12, 3);
 /// Number of real states that are tried. More are tried if the sum has a value at none of them.
 const WITNESSES: usize = 48;
 /// Number of states at which a sum is enclosed with more digits, whatever its value in doubles.
@@ -43,7 +42,12 @@ pub(super) trait Vanishing {
     /// The motion on D, if states have to satisfy the constraints; `None` if any point is a state.
     fn dynamics(&self) -> Option<&Dynamics>;
 
-    /// Moves a random point to a state; `None` if that fails there.
+    /// The positions of the states. `None` if any position is one.
+    fn positions(&self) -> Option<&Locus> {
+        self.dynamics().map(Dynamics::positions)
+    }
+
+    /// Moves a random point with the position of a state to that state; `None` if that fails there.
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
         match self.dynamics() {
             None => Some(()),
@@ -78,10 +82,11 @@ pub(super) trait Vanishing {
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
     /// Ranges that contain a state close to a real one, so that printed values are exact. `None` if the existence of
-    /// such a state is not certain. The dependent velocities follow from the other values.
+    /// such a state is not certain. The dependent coordinates and velocities follow from the other values.
     fn enclosed(&self, model: &Model, point: &RealPoint) -> Option<BallPoint> {
         let mut point = BallPoint::of(point);
         if let Some(dynamics) = self.dynamics() {
+            dynamics.positions().enclose(model, &mut point)?;
             dynamics.motion(&model.pool, &mut point, None)?;
         }
         Some(point)
@@ -226,68 +231,40 @@ fn sentence(sample: &Sample, values: &[(String, f64)]) -> String {
     format!("{} at {}", values.join(", "), sample.text())
 }
 
-/// The evidence on a sum of terms.
+/// The evidence on a sum of terms. A sum that vanishes at all positions vanishes at those of the states. Otherwise every
+/// component of the positions of the states is examined.
 pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> Evidence {
     let roots = question.roots();
     let profile = model.pool.profile_of(&roots);
-    let mut primes = Vec::new();
-    let residues = residues(model, question, &roots, &profile, seed, &mut primes);
-    let accident = chance_of_accident(model, profile.degree);
-    // Zeros that may be accidental prove nothing.
-    let residues = residues.and_then(|(covered, branches)| {
-        let error = covered.error(&branches, accident);
-        match !covered.holds || error <= LARGEST_CHANCE {
-            true => Ok((covered, error)),
-            false => Err(Undecided::Chance),
-        }
-    });
-    let (covered, open) = match residues {
-        Ok(covered) => (Some(covered), Undecided::Relations(Vec::new())),
-        Err(reason) => (None, reason),
-    };
-    let vanishes = covered.map(|(covered, _)| covered.holds);
-    primes.sort_unstable();
-    primes.dedup();
-    let is_exact = profile.is_exact() && !question.hides_relations(model);
-    let real = match is_exact && vanishes == Some(true) {
+    let (roots, positions) = (roots.as_slice(), question.positions());
+    let asked = |choice| residues(model, question, (roots, &profile), choice, seed);
+    let mut residues = asked(None);
+    let mut is_exact = profile.is_exact() && !question.hides_relations(model);
+    if let Some(positions) = positions.filter(|positions| !positions.is_everything())
+        && residues.vanishes != Some(true)
+    {
+        is_exact &= !positions.hides(&model.pool, roots);
+        let parts = positions.choices().into_iter().map(asked);
+        residues = match positions.is_solved() {
+            true => parts.reduce(Residues::and).unwrap_or(residues),
+            false => Residues::open(Undecided::Positions),
+        };
+    }
+    let real = match is_exact && residues.vanishes == Some(true) {
         true => real_evidence(model, question, Search::Value),
         false => real_evidence(model, question, Search::Difference),
     };
     Evidence {
-        vanishes,
-        points: covered.map_or(0, |(covered, _)| covered.points),
-        primes,
-        error: covered.map_or(1.0, |(_, error)| error),
+        vanishes: residues.vanishes,
+        points: residues.points,
+        primes: residues.primes,
+        error: residues.error,
         balance: real.balance,
         witness: real.witness,
         is_real: real.is_real,
         is_suspect: real.is_suspect,
-        open,
+        open: residues.open,
     }
-}
-
-/// Tests modulo primes whether a sum vanishes at states of all branches. Collects the primes. An error if a branch
-/// cannot be sampled.
-fn residues(
-    model: &Model,
-    question: &impl Vanishing,
-    roots: &[ExprId],
-    profile: &Profile,
-    seed: u64,
-    primes: &mut Vec<u64>,
-) -> Result<(Covered, Branches), Undecided> {
-    let mut points = sample_points(&model.pool, roots, profile, seed)?;
-    let branches = branches_of(&model.pool, roots, profile, &points).ok_or(Undecided::Branches)?;
-    let each = branches.points_of_each(STATES);
-    let covered = points.cover(&model.pool, &branches, each, |point| {
-        question.settle(model, point)?;
-        let terms = question.terms(model, point)?;
-        primes.push(point.modulus().prime());
-        let field = point.modulus();
-        let sum = terms.into_iter().fold(0, |sum, term| field.add(sum, term));
-        Some(sum == 0)
-    });
-    Ok((covered.ok_or(Undecided::Degenerate)?, branches))
 }
 
 /// Target of the search at real points.
@@ -310,15 +287,6 @@ struct Real {
     is_real: bool,
     /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     is_suspect: bool,
-}
-
-/// Upper bound of the probability of an accidental zero: the degree of a rate, divided by the prime (Schwartz, Zippel).
-/// The saddle system of acceleration and multipliers has N + M rows, and the numerators and denominators of its entries
-/// have at most the degree d of the profile. A rate has degree below `64 (2 N + M)^3 d`.
-fn chance_of_accident(model: &Model, degree: f64) -> f64 {
-    let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
-    let degree = 64.0 * sizes.powi(3) * degree.max(1.0);
-    degree / 2f64.powi(60)
 }
 
 fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Real {

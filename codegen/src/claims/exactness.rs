@@ -18,7 +18,8 @@ use super::fit::{
 use super::frame::frame;
 use super::global::{self, Global};
 use super::leaf;
-use super::potential::{Allowed, Candidates, Potential};
+use super::locus::Choice;
+use super::potential::{Allowed, Candidates, Potential, Term};
 use super::problem::Problem;
 use super::regularity;
 use super::smoothness::{HOLES, cuts};
@@ -31,6 +32,9 @@ const SAMPLES: usize = 3;
 const MONOMIALS: usize = 20_000;
 /// Order of the first attempt. Most hulls are closed within three brackets.
 const FIRST_ORDER: usize = 3;
+/// Reason why growth along a loop leaves the question open under position equations.
+const CLOSED: &str =
+    "it grows along a loop of other positions than those that satisfy the position equations";
 
 /// Conditions on parameters: values to which symbols are fixed.
 pub(super) type Conditions = [(SymbolId, Fixed)];
@@ -120,26 +124,30 @@ fn decide_local_from(
     let roots = problem.roots();
     let profile = pool.profile_of(&roots);
     let mut points = sample_points(pool, &roots, &profile, seed)?;
-    let mut found_in: BTreeMap<u64, (Hull, Vec<usize>)> = BTreeMap::new();
+    let mut found_in: BTreeMap<(Choice, u64), (Hull, Vec<usize>)> = BTreeMap::new();
     let mut primes = Vec::new();
     let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
     let (mut failure, mut is_free) = (None, false);
+    let choices = problem.positions.choices();
     let covered = points.cover(pool, &branches, SAMPLES, |point| {
         fix(pool, point, conditions)?;
-        let found = match sample(pool, problem, point, dependent, Until::Closed)? {
-            Ok(found) => found,
-            Err(depth) => {
-                failure = Some(Undecided::Depth(depth));
-                return Some(false);
+        for choice in &choices {
+            problem.positions.settle(pool, point, *choice)?;
+            let found = match sample(pool, problem, point, dependent, Until::Closed)? {
+                Ok(found) => found,
+                Err(depth) => {
+                    failure = Some(Undecided::Depth(depth));
+                    return Some(false);
+                }
+            };
+            primes.push(point.modulus().prime());
+            let pattern = (*choice, branches.pattern(pool, point)?);
+            is_free |= found.0.rank == found.0.extended_rank;
+            let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
+            let best = found_in.get(&pattern);
+            if best.is_none_or(|best| ranks(best) < ranks(&found)) {
+                found_in.insert(pattern, found);
             }
-        };
-        primes.push(point.modulus().prime());
-        let pattern = branches.pattern(pool, point)?;
-        is_free |= found.0.rank == found.0.extended_rank;
-        let ranks = |(hull, _): &(Hull, Vec<usize>)| (hull.rank, hull.extended_rank);
-        let best = found_in.get(&pattern);
-        if best.is_none_or(|best| ranks(best) < ranks(&found)) {
-            found_in.insert(pattern, found);
         }
         Some(true)
     });
@@ -225,10 +233,12 @@ pub(super) fn screen(
     conditions: &Conditions,
 ) -> Option<bool> {
     let mut left = attempts;
+    let first = problem.positions.choices()[0];
     points
         .find(pool, |point| {
             left -= 1;
             let found = fix(pool, point, conditions)
+                .and_then(|()| problem.positions.settle(pool, point, first))
                 .and_then(|()| sample(pool, problem, point, None, Until::Obstructed));
             match found {
                 None if left > 0 => None,
@@ -243,6 +253,8 @@ pub(super) fn screen(
 /// True if a function satisfies the demands near a point. `None` at a singular point, or if the hull is not closed
 /// within the largest order.
 pub(super) fn exists_at(pool: &Pool, problem: &Problem, point: &mut ModularPoint) -> Option<bool> {
+    let first = problem.positions.choices()[0];
+    problem.positions.settle(pool, point, first)?;
     let (hull, _) = sample(pool, problem, point, None, Until::Obstructed)?.ok()?;
     Some(hull.rank == hull.extended_rank)
 }
@@ -304,6 +316,27 @@ pub struct Exactness {
 /// # Errors
 /// [`Undecided`].
 pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactness, Undecided> {
+    let mut exactness = decide_anywhere(model, problem, seed)?;
+    // A density that is regular wherever the model is needs no solution of the equations.
+    let is_regular = |term: &Term| matches!(term, Term::MassDeterminant | Term::MetricDeterminant);
+    let is_everywhere = (exactness.density.iter())
+        .any(|(found, _)| found.terms.iter().all(|(_, term)| is_regular(term)));
+    if !problem.positions.is_solved() && !is_everywhere {
+        return Err(Undecided::Positions);
+    }
+    let grows = matches!(exactness.global, Some(Global::Many { .. }));
+    if grows && !problem.positions.is_everything() {
+        exactness.global = Some(Global::Undecided(CLOSED));
+    }
+    Ok(exactness)
+}
+
+/// Same as [`decide`], with loops at any position.
+fn decide_anywhere(
+    model: &mut Model,
+    problem: &Problem,
+    seed: u64,
+) -> Result<Exactness, Undecided> {
     problem.check_forces()?;
     if !regularity::is_real(model, problem) {
         return Err(Undecided::Degenerate);

@@ -166,6 +166,18 @@ impl Tangents {
         })
     }
 
+    /// Tangent vectors of the states. Under position equations alone they are those along the leaves. True if there are
+    /// other constraints beside position equations: some vectors then lead to positions that break the equations.
+    pub(super) fn of_states(model: &mut Model, dynamics: &Dynamics) -> Option<(Self, bool)> {
+        let tangents = Self::of(model, dynamics)?;
+        let of_positions = model.constraints.iter().filter(|it| it.is_of_positions);
+        Some(match of_positions.count() {
+            0 => (tangents, false),
+            count if count == model.constraints.len() => (tangents.along_leaves(), false),
+            _ => (tangents, true),
+        })
+    }
+
     /// The same vectors with dependent velocities chosen at a wall, where those of the interior may be singular.
     pub(super) fn at_wall(&self, model: &Model, around: &Surroundings<'_>, wall: &Wall) -> Self {
         if self.dependent.is_empty() {

@@ -335,11 +335,17 @@ pub(super) fn certify(
     let mut primes = Vec::new();
     let covered = points
         .cover(pool, &branches, each, |point| {
-            let rows = equations(pool, problem, &terms, point)?;
-            let values = pool.modular_eval(&coefficients, point).ok()?;
-            primes.push(point.modulus().prime());
-            let residuals = residuals(point.modulus(), &rows, &values);
-            Some(residuals.iter().all(|residual| *residual == 0))
+            for choice in problem.positions.choices() {
+                problem.positions.settle(pool, point, choice)?;
+                let rows = equations(pool, problem, &terms, point)?;
+                let values = pool.modular_eval(&coefficients, point).ok()?;
+                primes.push(point.modulus().prime());
+                let residuals = residuals(point.modulus(), &rows, &values);
+                if residuals.iter().any(|residual| *residual != 0) {
+                    return Some(false);
+                }
+            }
+            Some(true)
         })
         .ok_or(Undecided::Degenerate)?;
     if !covered.holds {

@@ -136,7 +136,7 @@ pub(super) fn changes_at(
     Ok(Changes {
         found,
         reflected,
-        is_solved: wall.is_solved(),
+        is_solved: wall.locus().is_solved(),
     })
 }
 

@@ -15,9 +15,11 @@ use super::expansion::{Part, Tangents, is_too_large};
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::Surroundings;
 use super::impact::check_conserved_under;
+use super::invariant::ACROSS;
 use super::invariant::ranked_at_states;
 use super::involution::check_involution;
 use super::lie::Lie;
+use super::residues::vanishes_nowhere;
 use super::sample::ATTEMPTS;
 use super::together::Together;
 use super::undecided::Undecided;
@@ -96,9 +98,12 @@ fn are_independent(
     around: &Surroundings<'_>,
     functions: &[Named<'_>],
 ) -> Verdict {
-    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+    let Some((tangents, leads_across)) = Tangents::of_states(model, around.dynamics) else {
         return Verdict::Undecided(Undecided::Degenerate.to_string());
     };
+    if leads_across {
+        return Verdict::Undecided(format!("whether they are independent: {ACROSS}"));
+    }
     if let Some((_, written)) = functions
         .iter()
         .find(|(value, _)| !is_analytic(&model.pool, *value))
@@ -123,6 +128,12 @@ fn are_independent(
     let all = evidence(model, &question, around.seed);
     if all.shows_that_it_vanishes() {
         return Verdict::Refuted(dependent(model, &question, functions));
+    }
+    // Functions may be dependent on one component of the positions and independent on another.
+    let is_connected = around.dynamics.positions().is_everything();
+    if !is_connected && !vanishes_nowhere(model, &question, around.seed) {
+        let text = "whether they are independent on every component of the positions";
+        return Verdict::Undecided(text.to_owned());
     }
     let open = all.open.to_string();
     let names = tangents.names(model);

@@ -51,6 +51,10 @@ impl<'f> Stated<'f> {
     }
 }
 
+/// Reason that keeps a question about tangent vectors open under position equations beside other constraints.
+pub(super) const ACROSS: &str =
+    "the vectors tried may lead to positions that break the position equations";
+
 /// The verdict on `invariant: form`.
 pub(super) fn check_invariant(
     model: &mut Model,
@@ -58,9 +62,12 @@ pub(super) fn check_invariant(
     form: &ExteriorForm,
     written: &str,
 ) -> Verdict {
-    match Tangents::of(model, around.dynamics) {
-        Some(tangents) => check_on(model, around, &tangents, Stated::named(form, written)),
-        None => Verdict::Undecided(Undecided::Degenerate.to_string()),
+    let Some((tangents, leads_across)) = Tangents::of_states(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    match check_on(model, around, &tangents, Stated::named(form, written)) {
+        Verdict::Refuted(_) if leads_across => Verdict::Undecided(ACROSS.to_owned()),
+        verdict => verdict,
     }
 }
 
@@ -84,14 +91,18 @@ pub(super) fn check_on_parts(
             dynamics,
             ..*around
         };
-        let Some(tangents) = Tangents::of(model, dynamics) else {
+        let Some((tangents, leads_across)) = Tangents::of_states(model, dynamics) else {
             return Verdict::Undecided(Undecided::Degenerate.to_string());
         };
         if let Some(open) = too_large(&tangents, form) {
             return open;
         }
         nothing.extend(vanishes(model, &around, &tangents, (&explicit, written)));
-        if let Some(refuted) = together.add(check_kept(model, &around, &tangents, stated)) {
+        let kept = match check_kept(model, &around, &tangents, stated) {
+            Verdict::Refuted(_) if leads_across => Verdict::Undecided(ACROSS.to_owned()),
+            verdict => verdict,
+        };
+        if let Some(refuted) = together.add(kept) {
             return refuted;
         }
     }

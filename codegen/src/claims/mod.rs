@@ -12,7 +12,8 @@
 //! | `alternatives.rs` | conditions, and densities that depend on velocities, as text |
 //! | `defaults.rs` | claims at the declared values of parameters |
 //! | `geometry.rs`, `dynamics.rs`, `branches.rs` | frame and theta, and the motion on D, at a point |
-//! | `evidence.rs`, `continuity.rs` | evidence that a quantity vanishes at all states; places where a quantity may jump |
+//! | `locus.rs` | positions that satisfy the position equations and lie on a surface |
+//! | `evidence.rs`, `residues.rs`, `continuity.rs` | evidence that a quantity vanishes at all states; places where a quantity may jump |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `equivariance.rs` | symmetries of motion, surfaces and their maps together |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
@@ -79,6 +80,7 @@ mod leaf;
 mod leaves;
 mod lie;
 mod linear;
+mod locus;
 mod minors;
 mod momentum;
 mod obstruction;
@@ -89,6 +91,7 @@ pub mod problem;
 mod reflection;
 mod refraction;
 mod regularity;
+mod residues;
 mod sample;
 mod side;
 mod sliding;

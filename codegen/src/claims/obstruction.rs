@@ -54,13 +54,17 @@ const LEAST_PIVOT: f64 = 1e-9;
 /// For a model with roots or absolute values, every point at which the bracket is such a combination must then show the
 /// obstruction.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
-    let roots = problem.roots();
+    let mut roots = problem.roots();
+    roots.extend(problem.positions.roots());
     let spans = local.rank == problem.components();
     let has_branches = model.pool.profile_of(&roots).branches && !spans;
     let mut shown = None;
     for attempt in 0..ATTEMPTS {
         let mut sample = sample(model, attempt, uses(&model.pool, &roots));
         move_between_knots(model, &roots, attempt, &mut sample);
+        if (problem.positions.settle_sample(model, &mut sample)).is_none() {
+            continue;
+        }
         let Some(found) = obstruction_at(model, problem, local, sample) else {
             continue;
         };
@@ -125,16 +129,22 @@ fn obstruction_at(
     };
     let monomials =
         JetSpace::new(problem.variables.len(), local.hull.growth.len(), usize::MAX)?.len();
-    if monomials > LARGE {
+    let is_anywhere = problem.positions.is_everything();
+    if monomials > LARGE && (is_anywhere || local.is_proof) {
         let found = match local.is_proof {
             true => question.in_doubles(),
-            false => question.enclosed::<EnclosedPoint>(REMAINDER),
+            false => {
+                let place = EnclosedPoint::of(&question.sample.point());
+                question.enclosed(place, REMAINDER)
+            }
         };
         if found.as_ref().is_some_and(|found| found.is_certain) {
             return found.map(Obstruction::with_eight_digits);
         }
     }
-    question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
+    let mut place = BallPoint::of(&question.sample.point());
+    problem.positions.enclose(model, &mut place)?;
+    question.enclosed(place, REMAINDER_OF_BALLS)
 }
 
 /// A hull with an obstruction, and the point at which the obstruction is computed.
@@ -180,10 +190,10 @@ impl Question<'_> {
         })
     }
 
-    /// The obstruction in ranges. It is certain if `delta` excludes 0 and all printed values are sharp. `least` is the
+    /// The obstruction at a place in ranges. It is certain if `delta` excludes 0 and all printed values are sharp. `least` is the
     /// largest accepted remainder of the combination, relative to the elements.
-    fn enclosed<P: RangePoint>(&self, least: f64) -> Option<Obstruction> {
-        let parts = self.parts(&mut P::of(&self.sample.point()))?;
+    fn enclosed<P: RangePoint>(&self, mut place: P, least: f64) -> Option<Obstruction> {
+        let parts = self.parts(&mut place)?;
         let sizes = |ranges: &[Number<P>]| {
             let sizes = ranges
                 .iter()

@@ -5,6 +5,7 @@ use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 use super::contraction::{Dependence, ForceSlope, dependence};
 use super::dynamics::Dynamics;
 use super::finding::seed_of;
+use super::locus::Locus;
 use super::sample::Sample;
 use super::undecided::Undecided;
 use crate::mechanics::Derivation;
@@ -23,6 +24,8 @@ pub struct Problem {
     pub(super) affine: Vec<ExprId>,
     /// Velocity-dependent part of the forces; `None` if the forces do not depend on velocities.
     pub(super) friction: Option<Friction>,
+    /// Positions that satisfy the position equations.
+    pub(super) positions: Locus,
     /// Symbols of the components.
     pub(super) symbols: Vec<SymbolId>,
     /// Indices of the components that occur anywhere, in order. They are the variables of all series.
@@ -76,6 +79,7 @@ impl Problem {
             forms,
             affine,
             friction,
+            positions: Locus::of_model(model),
             symbols,
             variables: Vec::new(),
             coordinates,
@@ -142,6 +146,7 @@ impl Problem {
                 *slope = pool.substitute(*slope, replacements);
             }
         }
+        problem.positions = problem.positions.substituted(pool, replacements);
         problem.settle(pool);
         problem
     }

@@ -258,8 +258,11 @@ pub(super) fn state_on_d(
     roots: &[ExprId],
     attempt: usize,
 ) -> Option<(Sample, RealPoint)> {
-    let mut sample = sample(model, attempt, uses(&model.pool, roots));
-    move_between_knots(model, roots, attempt, &mut sample);
+    let mut roots = roots.to_vec();
+    roots.extend(dynamics.positions().roots());
+    let mut sample = sample(model, attempt, uses(&model.pool, &roots));
+    move_between_knots(model, &roots, attempt, &mut sample);
+    dynamics.positions().settle_sample(model, &mut sample)?;
     with_velocities(model, dynamics, sample, attempt)
 }
 

@@ -46,7 +46,14 @@ pub(crate) fn check_symmetry(
         return check_commuting(model, dynamics, field, &rates, seed);
     }
     let directions = lifted(model, field);
-    let kept = kept(model, field);
+    let are_positions = model
+        .constraints
+        .iter()
+        .all(|constraint| constraint.is_of_positions);
+    let kept = Change {
+        on_d: (are_positions && !model.constraints.is_empty()).then_some(dynamics),
+        ..kept(model, field)
+    };
     let rate = kept.rate;
     let is_kept = evidence(model, &kept, seed).shows_that_it_vanishes();
     let mut changes = match is_kept {
@@ -57,6 +64,7 @@ pub(crate) fn check_symmetry(
             .collect(),
     };
     changes.extend(of_constraints(model, dynamics, &directions));
+    changes.extend(of_positions(model, dynamics, &directions));
     let mut certificate = match proved_together(model, &changes, seed) {
         Ok(certificate) => certificate,
         Err(verdict) => return (verdict, Vec::new()),
@@ -88,7 +96,8 @@ pub(super) fn check_constraints(
     seed: u64,
 ) -> Verdict {
     let directions = lifted(model, field);
-    let changes = of_constraints(model, dynamics, &directions);
+    let mut changes = of_constraints(model, dynamics, &directions);
+    changes.extend(of_positions(model, dynamics, &directions));
     verdict(proved_together(model, &changes, seed))
 }
 
@@ -151,6 +160,13 @@ fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
     Some(Verdict::Undecided(text))
 }
 
+fn has_position_equations(model: &Model) -> bool {
+    model
+        .constraints
+        .iter()
+        .any(|constraint| constraint.is_of_positions)
+}
+
 /// The certificate that all changes vanish, or the verdict on the first change that is not proved to vanish.
 fn proved_together(
     model: &Model,
@@ -163,6 +179,11 @@ fn proved_together(
             Verdict::Proved(certificate) => whole = Some(joined(whole, certificate)),
             Verdict::Undecided(reason) => {
                 let reason = format!("{}: {reason}", change.question());
+                return Err(Verdict::Undecided(reason));
+            }
+            // The changes were sought at any position.
+            Verdict::Refuted(_) if change.on_d.is_none() && has_position_equations(model) => {
+                let reason = format!("{}: {ELSEWHERE}", change.question());
                 return Err(Verdict::Undecided(reason));
             }
             refuted => return Err(refuted),
@@ -210,6 +231,27 @@ fn of_constraints<'d>(
     changes
 }
 
+/// The change of the left side of each position equation, which is 0 if the flow maps its solutions to solutions.
+fn of_positions<'d>(
+    model: &mut Model,
+    dynamics: &'d Dynamics,
+    directions: &[(SymbolId, ExprId)],
+) -> Vec<Change<'d>> {
+    let equations = model
+        .constraints
+        .iter()
+        .filter(|constraint| constraint.is_of_positions);
+    let levels = equations.filter_map(|it| Some((it.name.display.clone(), it.level?)));
+    let levels: Vec<(String, ExprId)> = levels.collect();
+    let change = |(name, level)| Change {
+        name: format!("rate of the left side of {name} along its flow"),
+        rate: model.pool.derivative_along(level, directions),
+        subject: Subject::Constraints,
+        on_d: Some(dynamics),
+    };
+    levels.into_iter().map(change).collect()
+}
+
 /// The change of each force at velocities in D, without components that vanish.
 fn of_forces<'d>(
     model: &mut Model,
@@ -243,6 +285,8 @@ fn of_forces<'d>(
     changes
 }
 
+/// Reason that keeps a change open under position equations.
+const ELSEWHERE: &str = "it does not at positions that break the position equations";
 /// Proved statement on a symmetry of the Lagrangian itself.
 const KEPT: &str = "its flow keeps the Lagrangian and the constraints";
 /// Proved statement on a symmetry of a first-order system.

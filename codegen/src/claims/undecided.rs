@@ -17,6 +17,8 @@ pub enum Undecided {
     /// Brackets of vector fields in D up to this depth did not close the involutive hull of D. Deeper brackets are not
     /// computed.
     Depth(usize),
+    /// The equations that positions satisfy are not solved for coordinates.
+    Positions,
     /// The divergence of the forces is not known to be linear in the velocities.
     Forces,
     /// The coefficients inside sin, cos and exp have no small common denominator.
@@ -47,6 +49,11 @@ impl fmt::Display for Undecided {
             Self::Depth(depth) => write!(
                 f,
                 "brackets up to depth {depth} did not close the hull of D, deeper ones are out of reach"
+            ),
+            Self::Positions => write!(
+                f,
+                "the equations of its positions are not solved: each must be a polynomial of degree 1 or 2 in a coordinate \
+                 that follows from the others, with a leading coefficient that is never 0"
             ),
             Self::Forces => write!(
                 f,

@@ -20,22 +20,16 @@
 use std::cmp::Ordering;
 
 use dalembert_expr::{
-    Arithmetic, BallPoint, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Pool, Rational,
-    RealPoint, Series, SymbolId, Verdict as Zero,
+    Arithmetic, BallPoint, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series, SymbolId,
 };
 
 use super::dynamics::{Dynamics, Number};
-use super::evidence::in_arguments;
 use super::impulse::Parts;
+use super::locus::{self, Locus};
 use super::passage::Passage;
 use super::sample::{Sample, sample, uses, with_velocities};
 use crate::mechanics::Derivation;
 use crate::model::{Beside, Law, Model, Surface};
-
-/// Newton steps from 16 digits to 76, and one more.
-const STEPS: usize = 4;
-/// Relative accuracy of their result, with a margin.
-const CLOSE: f64 = 1e-60;
 
 /// An impact surface with the expressions of its map.
 #[derive(Debug)]
@@ -61,18 +55,10 @@ pub(super) struct Wall {
     margins: Vec<ExprId>,
     /// Number of margins of the wall, and the number for each other surface that must not count.
     lists: (usize, Vec<usize>),
-    polynomials: Vec<Polynomial>,
-}
-
-/// Position of a state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
-    /// Anywhere: the map is a formula that makes sense off the surface too.
-    Anywhere,
-    /// On the surface: the first root of the gap, a polynomial of degree 1 or 2 in a coordinate.
-    First,
-    /// On the surface: the second root, which may be on another component. With degree 1 it is the first root.
-    Second,
+    /// Positions on the surface.
+    locus: Locus,
+    /// A coordinate that follows from the others on the surface, and its solution.
+    solution: Option<(SymbolId, ExprId)>,
 }
 
 /// Number of margins of the surface itself, and the number for each other surface that must not count.
@@ -132,7 +118,8 @@ impl Wall {
             rate: derived.rate,
             margins: derived.margins.clone(),
             lists: lists(&model.surfaces[surface]),
-            polynomials: polynomials(model, derived.gap, &coordinates),
+            locus: Locus::on_surface(model, derived.gap),
+            solution: locus::solution(model, derived.gap),
             coordinates,
             velocities: model
                 .coordinates
@@ -277,8 +264,9 @@ impl Wall {
         mut roots: Vec<ExprId>,
     ) -> Option<(Sample, RealPoint)> {
         roots.extend(&self.margins);
+        roots.extend(self.locus.roots());
         let mut sample = sample(model, attempt, uses(&model.pool, &roots));
-        self.settle_sample(model, &mut sample)?;
+        self.locus.settle_sample(model, &mut sample)?;
         let (sample, point) = with_velocities(model, dynamics, sample, attempt)?;
         let rate = model.pool.eval(&[self.gap_rate], &|s| point.value(s))[0];
         let margins = model.pool.eval(&self.margins, &|s| point.value(s));
@@ -300,97 +288,12 @@ impl Wall {
 
     /// A coordinate that follows from the others on the surface, and its solution.
     pub(super) fn solution(&self) -> Option<(SymbolId, ExprId)> {
-        let solved = |polynomial: &Polynomial| Some((polynomial.symbol, polynomial.solution?));
-        self.polynomials.iter().find_map(solved)
+        self.solution
     }
 
-    /// True if a coordinate for which the gap is solved occurs in the argument of a function. The residue of the
-    /// function is drawn at random for an argument that is not on the surface. An expression that vanishes for any
-    /// argument vanishes on the surface; the residues of other expressions prove nothing.
-    pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
-        let solved: Vec<SymbolId> = self
-            .polynomials
-            .iter()
-            .map(|polynomial| polynomial.symbol)
-            .collect();
-        in_arguments(pool, roots, &solved)
-    }
-
-    /// True if one coordinate reaches every component of the surface.
-    pub(super) fn is_solved(&self) -> bool {
-        !self.polynomials.is_empty()
-    }
-
-    /// Moves a point onto the surface by solving for a coordinate. Does nothing if the point may lie anywhere.
-    pub(super) fn settle(
-        &self,
-        model: &Model,
-        point: &mut ModularPoint,
-        place: Place,
-    ) -> Option<()> {
-        if place == Place::Anywhere {
-            return Some(());
-        }
-        self.polynomials.iter().find_map(|polynomial| {
-            let field = point.modulus();
-            let mut trial = point.clone();
-            trial.set(polynomial.symbol, 0);
-            let values = model
-                .pool
-                .modular_eval(&polynomial.coefficients, &mut trial)
-                .ok()?;
-            let [c, b, a] = values.as_slice() else {
-                return None;
-            };
-            let solution = if *a == 0 {
-                field.mul(field.neg(*c), field.inv(*b)?)
-            } else {
-                // a s^2 + b s + c = 0
-                let four = field.integer(4);
-                let square = field.sub(field.mul(*b, *b), field.mul(four, field.mul(*a, *c)));
-                let root = field.sqrt(square)?;
-                let root = match place {
-                    Place::Second => field.neg(root),
-                    _ => root,
-                };
-                let twice = field.inv(field.mul(field.integer(2), *a))?;
-                field.mul(field.sub(root, *b), twice)
-            };
-            point.set(polynomial.symbol, solution);
-            Some(())
-        })
-    }
-
-    /// Replaces the coordinate in which the gap is steepest, at a point near the surface, by a range that contains a
-    /// root of the gap. The gap has values on the whole range, and different signs at its ends. `None` if that is not
-    /// certain.
-    pub(super) fn enclose(&self, model: &Model, point: &mut BallPoint) -> Option<()> {
-        let mut roots = vec![self.gap];
-        roots.extend(&self.slope);
-        let order = model.pool.reachable(&roots);
-        let field = point.field();
-        let values = point.values(&model.pool, &order)?;
-        let slopes = self.slope.iter().enumerate();
-        let slopes = slopes.map(|(i, slope)| (i, values[slope.index()].nearest().abs()));
-        let (steepest, _) = slopes.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let symbol = self.coordinates[steepest];
-        let mut root = point.symbol(&model.pool, symbol).midpoint();
-        for _ in 0..STEPS {
-            point.set_symbol(symbol, root);
-            let values = point.values(&model.pool, &order)?;
-            let slope = field.inv(values[self.slope[steepest].index()])?;
-            let step = field.mul(values[self.gap.index()], slope);
-            root = field.sub(root, step).midpoint();
-        }
-        let range = root.widened(CLOSE * (1.0 + root.nearest().abs()));
-        let mut gap = |range| {
-            point.set_symbol(symbol, range);
-            Some(point.values(&model.pool, &order)?[self.gap.index()])
-        };
-        let [low, high] = range.ends();
-        let signs = [gap(low)?.sign()?, gap(high)?.sign()?];
-        gap(range)?;
-        (signs[0] != signs[1]).then_some(())
+    /// Positions on the surface.
+    pub(super) fn locus(&self) -> &Locus {
+        &self.locus
     }
 
     /// True if all states in the ranges of the point approach the surface, and it counts at all of them.
@@ -403,115 +306,5 @@ impl Wall {
         let sign = |id: &ExprId| values[id.index()].sign();
         let margins: Vec<_> = self.margins.iter().map(sign).collect();
         sign(&self.gap_rate) == Some(Ordering::Less) && self.counts(&margins)
-    }
-
-    /// Moves a real sample onto the surface by Newton's method in the coordinate in which the gap is steepest.
-    fn settle_sample(&self, model: &Model, sample: &mut Sample) -> Option<()> {
-        for _ in 0..60 {
-            let at = |symbol: SymbolId| sample.value(symbol).unwrap_or(0.0);
-            let gap = model.pool.eval(&[self.gap], &at)[0];
-            let slopes = model.pool.eval(&self.slope, &at);
-            let (steepest, slope) = slopes
-                .iter()
-                .enumerate()
-                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-            let step = gap / slope;
-            if !step.is_finite() {
-                return None;
-            }
-            let symbol = self.coordinates[steepest];
-            let value = at(symbol);
-            if step.abs() <= 1e-15 * (1.0 + value.abs()) {
-                return Some(());
-            }
-            let longest = 0.5 * (1.0 + value.abs());
-            sample.set(symbol, value - step.clamp(-longest, longest));
-        }
-        None
-    }
-}
-
-/// A coordinate in which a gap is `c + b s + a s^2`, with the expressions whose values at s = 0 are c, b, a.
-#[derive(Debug)]
-struct Polynomial {
-    symbol: SymbolId,
-    coefficients: [ExprId; 3],
-    /// `-c/b`, where a is 0.
-    solution: Option<ExprId>,
-}
-
-/// The coordinates in which a gap is a polynomial of degree 1 or 2 whose leading coefficient is 0 nowhere.
-///
-/// NOTE: every component of the surface is then reached by solving for the coordinate. `x*y` has no such coordinate:
-/// solving for `x` misses the component `y = 0`.
-fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<Polynomial> {
-    let mut found = Vec::new();
-    let mut moving = coordinates.to_vec();
-    moving.push(model.time);
-    for symbol in coordinates {
-        let pool = &mut model.pool;
-        let first = pool.diff(gap, *symbol);
-        let second = pool.diff(first, *symbol);
-        let third = pool.diff(second, *symbol);
-        let is_zero = |id: ExprId, pool: &Pool| pool.zero_test(id) == Zero::Proved;
-        let is_linear = is_zero(second, pool);
-        let leading = if is_linear { first } else { second };
-        // A factor that contains only parameters vanishes on no component.
-        let is_unit = !pool.depends_on_any(leading, &moving)
-            || (pool.sign(leading).is_nonzero() && pool.is_finite(leading));
-        if is_zero(third, pool) && !is_zero(leading, pool) && is_unit {
-            let half = pool.scale(&Rational::new(1, 2), second);
-            let solution = is_linear.then(|| {
-                let zero = pool.zero();
-                let constant = pool.substitute(gap, &[(*symbol, zero)]);
-                let quotient = pool.div(constant, first);
-                pool.neg(quotient)
-            });
-            found.push(Polynomial {
-                symbol: *symbol,
-                coefficients: [gap, first, half],
-                solution,
-            });
-        }
-    }
-    found
-}
-
-#[cfg(test)]
-mod tests {
-    use dalembert_expr::RangePoint;
-
-    use super::*;
-
-    /// Midpoint and radius of the range of `x` that encloses a point of the unit circle next to `(x, 0.3)`.
-    fn enclosed(x: f64) -> Option<(f64, f64)> {
-        let declaration = "pub Sample { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
-            impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
-        let (mut model, derivation) = crate::claims::derived(declaration);
-        let wall = Wall::of(&mut model, &derivation, 0, &[]);
-        let [first, second] = [0, 1].map(|i| model.coordinates[i].q);
-        let mut point = RealPoint::default();
-        point.set(first, x);
-        point.set(second, 0.3);
-        let mut point = BallPoint::of(&point);
-        wall.enclose(&model, &mut point)?;
-        let range = point.symbol(&model.pool, first);
-        Some((range.nearest(), range.radius()))
-    }
-
-    #[test]
-    fn a_position_on_the_surface_is_enclosed() {
-        let root = 0.91_f64.sqrt();
-        let (place, radius) = enclosed(root).expect("a range");
-        assert!(
-            (place - root).abs() < 1e-15 && radius < 1e-59,
-            "{place} within {radius:e}"
-        );
-    }
-
-    #[test]
-    fn a_position_off_the_surface_is_not() {
-        // Far from the circle, a step of Newton's method only halves the distance.
-        assert_eq!(enclosed(5e5), None);
     }
 }
