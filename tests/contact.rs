@@ -533,3 +533,73 @@ fn a_surface_holds_only_where_its_condition_holds() {
         }
     }
 }
+
+static FALLING_ROAD: Text = Text::new(
+    "/// A point on a level road that goes on downhill from `x = 1`.
+    pub FallingRoad {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { road: y >= (1 - x - abs(x - 1))/2 => newton(0); }
+    }",
+);
+
+static RISING_ROAD: Text = Text::new(
+    "/// A point on a level road that goes on uphill from `x = 1`.
+    pub RisingRoad {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { road: y >= (x - 1 + abs(x - 1))/2 => newton(0); }
+    }",
+);
+
+/// The point flies off where the road turns downhill, lands on the slope at `t = 3` and slides down.
+#[test]
+fn a_held_motion_leaves_at_a_kink_where_the_road_falls_away() {
+    let road = FALLING_ROAD.model();
+    for &integrator in Integrator::every() {
+        let course = Course::new(&road, &[0.0, 0.0], &[1.0, 0.0], 4.0).tol(1e-12);
+        let end = course.step(1e-2).resting().run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), end.holds);
+        assert_eq!(end.outcome, Outcome::Done, "{case}");
+        let begins: Vec<bool> = end.holds.iter().map(|hold| hold.begins).collect();
+        assert_eq!(begins, [true, false, true], "{case}");
+        let times = [end.holds[1].t - 1.0, end.holds[2].t - 3.0];
+        assert!(times.iter().all(|error| error.abs() < 1e-9), "{case}");
+        let errors = [end.q[0] - 4.75, end.q[1] + 3.75];
+        assert!(errors.iter().all(|error| error.abs() < 1e-9), "{case}");
+    }
+}
+
+/// The point hits the slope at `t = 1`, slides up, comes back to the level road at `t = 3` and hits it.
+#[test]
+fn a_held_motion_hits_the_surface_at_a_kink_where_the_road_rises() {
+    let road = RISING_ROAD.model();
+    for &integrator in Integrator::every() {
+        let course = Course::new(&road, &[0.0, 0.0], &[1.0, 0.0], 4.0).tol(1e-12);
+        let end = course.step(1e-2).resting().run(Setting::free(integrator));
+        let case = format!("{}: {:?} {:?}", integrator.name(), end.holds, end.q);
+        assert_eq!(end.outcome, Outcome::Done, "{case}");
+        let errors = [end.q[0] - 0.5, end.q[1], end.qdot[0] + 0.5, end.qdot[1]];
+        assert!(errors.iter().all(|error| error.abs() < 1e-9), "{case}");
+    }
+}
+
+/// A point slides into a crease with walls at a right angle, which takes all of its velocity.
+#[test]
+fn a_held_motion_ends_in_a_crease() {
+    static CREASE: Text = Text::new(
+        "pub Crease {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+            impacts { walls: y >= abs(x) => newton(0); }
+        }",
+    );
+    let crease = CREASE.model();
+    for &integrator in Integrator::every() {
+        let course = Course::new(&crease, &[0.5, 0.5], &[0.0, 0.0], 3.0).tol(1e-10);
+        let end = course.step(1e-2).resting().run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), end.outcome);
+        assert!(end.outcome != Outcome::Done, "{case}");
+        assert!((end.t - 2.0_f64.sqrt()).abs() < 1e-6, "{case}");
+    }
+}

@@ -196,6 +196,19 @@ pub trait Effect<Sys: System> {
         Ok(())
     }
 
+    /// The fraction of a step under the effect's forces up to which the forces vary so little that the step shows it; 1
+    /// for the whole step. A step that does not show them is repeated with a shorter length.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run, at the start of the step.
+    fn shown<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<f64, Outcome> {
+        let _ = step;
+        Ok(1.0)
+    }
+
     /// Proposes the earliest crossing in the step, as a fraction in \[0, 1\] of it. 0 discards the step. `None`
     /// accepts the step to its end.
     ///
@@ -354,6 +367,16 @@ impl<Sys: System, E: Effect<Sys>> Effect<Sys> for Option<E> {
         }
     }
 
+    fn shown<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<f64, Outcome> {
+        match self {
+            Some(effect) => effect.shown(step),
+            None => Ok(1.0),
+        }
+    }
+
     #[inline(always)]
     fn propose<Step: Stepper<Sys>>(
         &mut self,
@@ -462,6 +485,15 @@ macro_rules! compose {
             ) -> Result<(), Outcome> {
                 $(self.$index.begin(now, observer)?;)+
                 Ok(())
+            }
+
+            fn shown<Step: Stepper<Sys>>(
+                &mut self,
+                step: &mut StepView<'_, Sys, Step>,
+            ) -> Result<f64, Outcome> {
+                let mut least = 1.0_f64;
+                $(least = least.min(self.$index.shown(step)?);)+
+                Ok(least)
             }
 
             #[inline(always)]

@@ -372,6 +372,20 @@ where
         self.system.counts_along(surface, along, rounding)
     }
 
+    fn has_kinks(&self, surface: usize) -> bool {
+        self.system.has_kinks(surface)
+    }
+
+    fn passes_kink(
+        &self,
+        surface: usize,
+        start: Along<'_>,
+        along: Along<'_>,
+        rounding: Along<'_>,
+    ) -> Option<bool> {
+        self.system.passes_kink(surface, start, along, rounding)
+    }
+
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         self.system.takes(surface, t, state)
     }

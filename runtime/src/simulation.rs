@@ -301,6 +301,9 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if is_checked && forces.is_none() && self.shorten_where_narrow()? {
             return Ok(Next::Step);
         }
+        if forces.is_some() && self.shorten_where_hidden()? {
+            return Ok(Next::Step);
+        }
         let mut view = StepView {
             system: self.system,
             counters: &mut self.progress.counters,
@@ -504,6 +507,22 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             stepper: &mut *self.stepper,
         };
         let resolved = narrow::resolved(&mut view)?;
+        self.shorten_to(resolved)
+    }
+
+    /// Repeats the step in the same way if it does not show forces of the effects. True if it is repeated.
+    fn shorten_where_hidden(&mut self) -> Result<bool, Outcome> {
+        let mut view = StepView {
+            system: self.system,
+            counters: &mut self.progress.counters,
+            stepper: &mut *self.stepper,
+        };
+        let shown = self.effects.shown(&mut view)?;
+        self.shorten_to(shown)
+    }
+
+    /// Repeats the step from the same start if it resolves only a fraction of itself. True if it is repeated.
+    fn shorten_to(&mut self, resolved: f64) -> Result<bool, Outcome> {
         if resolved >= 1.0 {
             return Ok(false);
         }

@@ -195,7 +195,7 @@ records! {
     kernels::Dimensions { state, coordinates, motion, constraints, levels, surfaces, parameters }
     kernels::Chart { coordinate, ends }
     kernels::Condition { is_closed }
-    kernels::Surface { law, coefficient, conditions, others, beside, takes }
+    kernels::Surface { law, coefficient, conditions, others, beside, kinks, takes }
     kernels::Level { constraint, is_zero }
     kernels::Transition { enters, passage, has_no_side, opposite }
     kernels::Mode {

@@ -4,7 +4,7 @@
 //! constraints. Its effect on the state is the same for every multiple of `dh`. For a wall at rest, only the direction
 //! of `dh` matters: its *ray*, without factors that are never zero.
 
-use dalembert_expr::{ExprId, Pool};
+use dalembert_expr::{ExprId, Node, Pool, Singularity};
 
 use super::common_factor::{factored, without_regular_factor};
 use super::constraint::derive_residual;
@@ -43,12 +43,28 @@ pub struct SurfaceForm {
     pub curvature: ExprId,
     /// Functions whose signs decide where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
     pub margins: Vec<ExprId>,
+    /// Arguments of the absolute values in the gap, see [`kinks`].
+    pub kinks: Vec<ExprId>,
     /// The instantaneous constraints of the surface.
     pub instantaneous: Vec<InstantaneousForm>,
     /// Direction of `dh` without common factors that are never zero; `None` for a moving wall.
     pub ray: Option<Vec<ExprId>>,
     /// The ray of `X^T dh`, with the frame `X` of D as columns; `None` for a moving wall, or if it is not written out.
     pub ray_on_d: Option<Vec<ExprId>>,
+}
+
+/// Arguments of the absolute values in a gap, in order of their expressions. Where one of them changes sign, the gap has
+/// a kink.
+pub fn kinks(pool: &Pool, gap: ExprId) -> Vec<ExprId> {
+    let parts = pool.reachable(&[gap]).into_iter();
+    parts
+        .filter_map(|id| match pool.node(id) {
+            Node::Call(function, argument) if function.singularity() == Singularity::Kink => {
+                Some(*argument)
+            }
+            _ => None,
+        })
+        .collect()
 }
 
 /// Differentiates every surface.
@@ -78,6 +94,7 @@ pub(super) fn derive_surfaces(
                 curvature: model.pool.derivative_along(gap_rate, &motion),
                 gap_rate,
                 margins: model.surfaces[s].margins().collect(),
+                kinks: kinks(&model.pool, gap),
                 instantaneous: derive_instantaneous(model, coordinates, s),
             }
         })

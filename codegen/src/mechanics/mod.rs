@@ -40,7 +40,7 @@ pub use density::DensityTerms;
 pub use factors::FactorRow;
 pub use field::FieldTerms;
 pub use frame::{Frame, Unreduced};
-pub use impact::SurfaceForm;
+pub use impact::{SurfaceForm, kinks};
 pub use metric::MetricDerivatives;
 
 /// The expressions from which every emitted function is built, in the pool of the model.

@@ -510,7 +510,8 @@ pub struct Impacting {
     pub gap_accelerations: Function,
     /// `(t, s, w) ->` changes of the gap rates by an impulse `w`
     pub gap_responses: Function,
-    /// Per surface: `(t, q) -> margins of its conditions`; `None` without conditions.
+    /// Per surface: `(t, q) -> margins of its conditions, then arguments of absolute values in its gap`; `None` without
+    /// either.
     pub conditions: Vec<Option<Function>>,
     /// Per surface: `(t, s) -> size, share, direction`. By its law, the impulse is `size * direction` and removes this
     /// share of the gap rate. `None` for a law that is no impulse.

@@ -5,6 +5,7 @@ use dalembert_numbers::tables::{self, Chart, Condition, Dimensions, Level, Surfa
 use dalembert_numbers::{Held, Kernel};
 
 use super::{FormOf, constant, description, name, table};
+use crate::mechanics::kinks;
 use crate::model::{self, Topology};
 use crate::program::jet::degree::Degree;
 use crate::program::{Form, Function, Input, Op};
@@ -183,6 +184,7 @@ impl FormOf<'_> {
                 model::Beside::Otherwise(_) => tables::Beside::Otherwise,
                 model::Beside::Last(_) => tables::Beside::Last,
             },
+            kinks: kinks(&self.model.pool, surface.gap).len(),
             takes: impacting.map_or(0, |impacting| coordinates_of(&impacting.gap_alone[index])),
         }
     }

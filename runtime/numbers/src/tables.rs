@@ -74,6 +74,8 @@ pub struct Surface {
     pub others: Held<[Held<[Condition]>]>,
     /// Rule by which `conditions` and `others` decide if the surface counts.
     pub beside: Beside,
+    /// Number of absolute values in the gap. Their arguments follow the margins of all conditions.
+    pub kinks: usize,
     /// Bit set of the coordinates that the gap depends on. The last bit stands for all coordinates from its index on.
     pub takes: u64,
 }

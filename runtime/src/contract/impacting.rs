@@ -146,6 +146,27 @@ pub trait Impacting: System {
         None
     }
 
+    /// True if the gap of a surface contains absolute values that [`Impacting::passes_kink`] encloses.
+    fn has_kinks(&self, surface: usize) -> bool {
+        let _ = surface;
+        false
+    }
+
+    /// True if the argument of an absolute value in the gap has another sign all along a part of the motion than at
+    /// `start`, false if no argument has another sign anywhere on it; `None` if neither is certain. `rounding` is as
+    /// for [`Impacting::counts_along`]. An argument within its rounding error has no sign; it has another one where it
+    /// leaves that error.
+    fn passes_kink(
+        &self,
+        surface: usize,
+        start: Along<'_>,
+        along: Along<'_>,
+        rounding: Along<'_>,
+    ) -> Option<bool> {
+        let _ = (surface, start, along, rounding);
+        Some(false)
+    }
+
     /// True if a surface that counts has a law here. If it has none, the run ends as
     /// [`Outcome::Untaken`](crate::Outcome::Untaken).
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {

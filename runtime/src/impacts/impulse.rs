@@ -556,6 +556,13 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         self.strike(hits, now, observer)
     }
 
+    fn shown<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<f64, Outcome> {
+        self.watch.up_to_second_kink(step)
+    }
+
     #[inline]
     fn propose<Step: Stepper<Sys>>(
         &mut self,
@@ -566,7 +573,12 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             Ok(hit) if self.resting.is_none() => Ok(hit),
             Ok(hit) => {
                 let end = self.watch.end_of_hold(hit.unwrap_or(1.0), step)?;
-                self.resting.look(hit, end, step)
+                let first = self.resting.look(hit, end, step)?;
+                let kink = self.watch.kink_of_hold(first.unwrap_or(1.0), step)?;
+                match kink.filter(|kink| first.is_none_or(|first| *kink < first)) {
+                    Some(kink) => Ok(Some(self.resting.pass_kink(kink))),
+                    None => Ok(first),
+                }
             }
             Err(Outcome::Contact { surface }) => self.press(surface, step),
             // At rest on the surface: a force that grows from 0 presses.
@@ -579,6 +591,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
 
     fn settle(&mut self, now: &mut Moment<'_, Sys>, _: bool) -> Result<Change, Outcome> {
         match self.resting.forces() {
+            // A gap rate that is not 0 may be that of the other side of a kink.
+            Some(_) if self.resting.is_behind_kink() || self.watch.is_at_kink(now) => {
+                Ok(Change::Kept)
+            }
             Some(held) => Ok(held.settle(now)?),
             None => Ok(Change::Kept),
         }
@@ -592,6 +608,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     ) -> Result<(), Outcome> {
         self.watch.check_behind(theta, now)?;
         let held = *self.resting.held();
+        self.resting.count_kink(now.t)?;
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;
             self.watch.hold(self.resting.held());

@@ -26,6 +26,10 @@ const CHANGES: u32 = 4;
 /// Ratio to the kinetic energy below which the square of a gap rate counts as 0: the square of `2^-36`, as for impacts.
 const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
+/// Number of kinks in succession, and their distance in time relative to the time, at which the motion counts as held in
+/// a crease: it would move to and fro across it without end.
+const CREASE: (u32, f64) = (8, 1.0 / (1 << 30) as f64);
+
 /// Reason for a cut of the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Turn {
@@ -34,6 +38,8 @@ enum Turn {
     Press(usize),
     /// The contact force of this surface would have to pull, or the surface no longer counts.
     Leave(usize),
+    /// The gap of a held surface has passed a kink.
+    Kink,
 }
 
 /// The surfaces that the state rests on.
@@ -45,6 +51,8 @@ pub(super) struct Resting<G: StateVector> {
     accumulated: PerSurface<Option<f64>, G>,
     /// Changes of surfaces at one time.
     changes: Repeats,
+    /// Time of the last kink that was passed, and the number of kinks in close succession before it.
+    kinks: (f64, u32),
 }
 
 impl<G: StateVector> Resting<G> {
@@ -55,6 +63,7 @@ impl<G: StateVector> Resting<G> {
             turn: Turn::Nothing,
             accumulated: PerSurface::all(like, None),
             changes: Repeats::none(),
+            kinks: (f64::NEG_INFINITY, 0),
         }
     }
 
@@ -116,6 +125,37 @@ impl<G: StateVector> Resting<G> {
         }
     }
 
+    /// Cuts the step at `part`, where the gap of a held surface has passed a kink: its rate may have jumped, so that the
+    /// surface acts anew. A change found later in the step is withdrawn.
+    pub(super) fn pass_kink(&mut self, part: f64) -> f64 {
+        self.turn = Turn::Kink;
+        part
+    }
+
+    /// Counts a kink behind which the step was cut. Ends the run in a crease, where no direction is that of the force.
+    pub(super) fn count_kink(&mut self, t: f64) -> Result<(), Outcome> {
+        if !self.is_behind_kink() {
+            return Ok(());
+        }
+        let (last, count) = self.kinks;
+        let (most, close) = CREASE;
+        let count = if t - last <= close * t.abs() {
+            count + 1
+        } else {
+            0
+        };
+        self.kinks = (t, count);
+        match self.held.iter().next() {
+            Some(surface) if count > most => Err(Outcome::Zeno { t, surface }),
+            _ => Ok(()),
+        }
+    }
+
+    /// True if the step was cut behind a kink.
+    pub(super) fn is_behind_kink(&self) -> bool {
+        self.turn == Turn::Kink
+    }
+
     /// Carries out the change for which the step was cut. True if there is one.
     pub(super) fn turn<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
@@ -123,7 +163,7 @@ impl<G: StateVector> Resting<G> {
         observer: &mut O,
     ) -> Result<bool, Outcome> {
         match core::mem::replace(&mut self.turn, Turn::Nothing) {
-            Turn::Nothing => return Ok(false),
+            Turn::Nothing | Turn::Kink => return Ok(false),
             Turn::Leave(surface) => match self.held.slide() {
                 Some(slide) => self.end_slide(slide, surface, now, observer)?,
                 None => self.leave(surface, now, observer)?,

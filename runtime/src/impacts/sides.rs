@@ -10,7 +10,7 @@ use core::cell::RefCell;
 use super::glance::{Glance, SAME_TIME};
 use super::search::is_active;
 use super::watch::{Watch, rounding};
-use crate::contract::Impacting;
+use crate::contract::{Along, Impacting};
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
 use crate::events::resolution::is_beyond_rounding;
@@ -19,6 +19,8 @@ use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
+/// Smallest fraction of a step between two kinks that are told apart.
+const LEAST_STRETCH: f64 = 1e-6;
 /// Bound for the relative rounding error of a component or of the time.
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
@@ -130,9 +132,6 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Option<bool> {
         let component = |i: usize| self.path.component(i, part);
         let time = self.path.time_model(part);
-        let about = |value: f64, size: f64| {
-            TaylorModel::steady(Interval::point(value).widened(UNITS * size.abs()))
-        };
         let (t, state) = (step.t_end(), step.end());
         let rounded = |i: usize| about(state.as_slice()[i], self.sizes.as_slice()[i]);
         (step.system).counts_along(surface, (time, &component), (about(t, t), &rounded))
@@ -169,6 +168,105 @@ impl<Sys: Impacting> Watch<Sys> {
             first = part.map(|part| (part, slide.across)).or(first);
         }
         Ok(first)
+    }
+
+    /// The first fraction of the step, up to `reach`, at which the gap of a surface that holds the motion has passed a
+    /// kink, by more than rounding errors. The gap rate may jump there. While the motion slides, kinks are not watched.
+    pub(super) fn kink_of_hold<Step: Stepper<Sys>>(
+        &mut self,
+        reach: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        let (held, mut first) = (self.held, None);
+        if held.slide().is_some() {
+            return Ok(None);
+        }
+        for surface in held
+            .iter()
+            .filter(|&surface| step.system.has_kinks(surface))
+        {
+            step.prepare()?;
+            self.path.follow_dense(step);
+            let until = first.unwrap_or(reach);
+            let kink = self.passes_kink(surface, [0.0, until], step);
+            first = kink.or(first);
+        }
+        Ok(first)
+    }
+
+    /// The fraction of the step up to the middle between the first two kinks that gaps of held surfaces pass; 1 for
+    /// fewer kinks. At the end of a step over one kink, the force behind the kink acts, and the error of the step shows
+    /// it; the force between two kinks may act at no stage.
+    pub(super) fn up_to_second_kink<Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<f64, Outcome> {
+        let Some(first) = self.kink_of_hold(1.0, step)? else {
+            return Ok(1.0);
+        };
+        let held = self.held;
+        let mut shown = 1.0;
+        for surface in held.iter() {
+            if step.system.has_kinks(surface)
+                && let Some(second) = self.passes_kink(surface, [first, 1.0], step)
+                && second - first > LEAST_STRETCH
+            {
+                shown = f64::min(shown, f64::midpoint(first, second));
+            }
+        }
+        Ok(shown)
+    }
+
+    /// The first fraction of a part of the step at which the gap of a surface has passed a kink since its start.
+    fn passes_kink<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        [from, to]: [f64; 2],
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Option<f64> {
+        let place = |part: f64| from + part * (to - from);
+        let passes = |along: Along<'_>, step: &StepView<'_, Sys, Step>| {
+            let start = step.state(from);
+            let start = |i: usize| about(start.as_slice()[i], 0.0);
+            let begin = about(step.time(from), 0.0);
+            let (t, end) = (step.t_end(), step.end());
+            let rounded = |i: usize| about(end.as_slice()[i], self.sizes.as_slice()[i]);
+            let rounding = (about(t, t), &rounded as &dyn Fn(usize) -> TaylorModel);
+            (step.system).passes_kink(surface, (begin, &start), along, rounding)
+        };
+        let step = RefCell::new(step);
+        let is_smooth = |part: [f64; 2]| {
+            let step = &mut *step.borrow_mut();
+            step.counters.enclosures += 1;
+            let part = part.map(place);
+            let component = |i: usize| self.path.component(i, part);
+            passes((self.path.time_model(part), &component), step) == Some(false)
+        };
+        let has_passed = |part: f64| {
+            let step = &**step.borrow();
+            let (time, state) = (step.time(place(part)), step.state(place(part)));
+            let component = |i: usize| about(state.as_slice()[i], 0.0);
+            passes((about(time, 0.0), &component), step) == Some(true)
+        };
+        onset(1.0, is_smooth, has_passed).map(|found| place(found.after))
+    }
+
+    /// True if the gap of a surface that holds the motion has a kink within rounding of the state.
+    pub(super) fn is_at_kink(&self, now: &Moment<'_, Sys>) -> bool {
+        let (system, t, sizes) = (now.system, now.t, &self.sizes);
+        let state = |units: f64| {
+            move |i: usize| about(now.state.as_slice()[i], units * sizes.as_slice()[i])
+        };
+        let (exact, rounded, widened) = (state(0.0), state(1.0), state(4.0));
+        let is_near = |surface: usize| {
+            let start: Along<'_> = (about(t, 0.0), &exact);
+            let around: Along<'_> = (about(t, 4.0 * t), &widened);
+            let passes = system.passes_kink(surface, start, around, (about(t, t), &rounded));
+            passes != Some(false)
+        };
+        let mut held = self.held.iter();
+        self.held.slide().is_none()
+            && held.any(|surface| system.has_kinks(surface) && is_near(surface))
     }
 
     /// The first fraction of the step, up to `reach`, at which a surface does not count, by more than rounding errors.
@@ -248,6 +346,11 @@ impl<Sys: Impacting> Watch<Sys> {
             _ => Ok(()),
         }
     }
+}
+
+/// A number that is steady within the rounding errors of a component of this size.
+fn about(value: f64, size: f64) -> TaylorModel {
+    TaylorModel::steady(Interval::point(value).widened(UNITS * size.abs()))
 }
 
 /// The onset of a surface that counts beyond rounding at the fraction `after` of the step. It lies shortly before

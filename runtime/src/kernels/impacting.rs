@@ -82,11 +82,10 @@ fn conditions<S: Declared>(
     t: f64,
     state: &S::State,
 ) -> [bool; 2] {
-    let others = surface.others.iter().map(|list| list.len()).sum::<usize>();
-    let count = surface.conditions.len() + others;
-    if count == 0 {
+    if lists(surface).all(<[Condition]>::is_empty) {
         return [true, false];
     }
+    let count = signs(surface);
     let kernel = (
         |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
             kernels.conditions(local, at, values)
@@ -107,16 +106,46 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
+/// Number of values of the kernel of conditions: margins of all conditions, and arguments of absolute values in the gap.
+fn signs(surface: &Surface) -> usize {
+    lists(surface).map(<[Condition]>::len).sum::<usize>() + surface.kinks
+}
+
+/// Values of the kernel of conditions along a motion.
+fn signs_along<S: Declared>(
+    system: &S,
+    part: &Part<'_, S>,
+    (local, surface): (usize, &Surface),
+    (t, component): Along<'_>,
+) -> Option<S::Room<TaylorModel>> {
+    let arguments: S::Arguments<TaylorModel> = over_numbers(system);
+    let mut q = S::Positions::<TaylorModel>::zeros(part.lengths()[0]);
+    for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
+        *entry = component(i);
+    }
+    let at = At {
+        parameters: arguments.as_slice(),
+        t,
+        first: q.as_slice(),
+        second: &[],
+    };
+    let count = signs(surface);
+    let mut values = S::Room::<TaylorModel>::zeros(count);
+    let found = &mut values.as_mut_slice()[..count];
+    part.kernels.conditions(local, at, found).ok()?;
+    Some(values)
+}
+
 /// True if a surface counts all along a motion, false if it counts nowhere on it; `None` if neither is certain. A
 /// condition whose margin is within its rounding error counts as violated, also a closed one.
 fn counts_along<S: Declared>(
     system: &S,
     surface: usize,
-    (t, component): Along<'_>,
-    (moment, rounded): Along<'_>,
+    along: Along<'_>,
+    rounding: Along<'_>,
 ) -> Option<bool> {
     let number = match has_modes(system) {
-        true => number_of(Some(&component(system.state_len() - 1))),
+        true => number_of(Some(&along.1(system.state_len() - 1))),
         false => 0,
     };
     let part = Part::numbered(system, number);
@@ -126,28 +155,11 @@ fn counts_along<S: Declared>(
     let Some(declared) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
-    let count = lists(declared).map(<[Condition]>::len).sum::<usize>();
-    if count == 0 {
+    if lists(declared).all(<[Condition]>::is_empty) {
         return Some(true);
     }
-    let arguments: S::Arguments<TaylorModel> = over_numbers(system);
-    let margins = |t: TaylorModel, component: &dyn Fn(usize) -> TaylorModel| {
-        let mut q = S::Positions::<TaylorModel>::zeros(part.lengths()[0]);
-        for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
-            *entry = component(i);
-        }
-        let at = At {
-            parameters: arguments.as_slice(),
-            t,
-            first: q.as_slice(),
-            second: &[],
-        };
-        let mut margins = S::Room::<TaylorModel>::zeros(count);
-        let values = &mut margins.as_mut_slice()[..count];
-        part.kernels.conditions(surface, at, values).ok()?;
-        Some(margins)
-    };
-    let (along, rounding) = (margins(t, component)?, margins(moment, rounded)?);
+    let margins = |moments| signs_along(system, &part, (surface, declared), moments);
+    let (along, rounding) = (margins(along)?, margins(rounding)?);
     let mut holds = lists_hold(declared, |place, _| {
         let margin = along.as_slice()[place].range();
         let floor = rounding.as_slice()[place].range().width();
@@ -161,6 +173,41 @@ fn counts_along<S: Declared>(
         Beside::Otherwise => none,
         Beside::Last => certain::none([own_holds, none].into_iter()).map(|neither| !neither),
     }
+}
+
+/// True if a motion has passed a kink of a gap all along, false if it passes none; see [`Impacting::passes_kink`].
+fn passes_kink<S: Declared>(
+    system: &S,
+    surface: usize,
+    start: Along<'_>,
+    along: Along<'_>,
+    rounding: Along<'_>,
+) -> Option<bool> {
+    let number = match has_modes(system) {
+        true => number_of(Some(&start.1(system.state_len() - 1))),
+        false => 0,
+    };
+    let part = Part::numbered(system, number);
+    let Some(declared) =
+        (part.surface(surface)).and_then(|local| Some((local, part.tables.surfaces.get(local)?)))
+    else {
+        return Some(false);
+    };
+    let arguments = |moments| signs_along(system, &part, declared, moments);
+    let (start, along, rounding) = (arguments(start)?, arguments(along)?, arguments(rounding)?);
+    let count = signs(declared.1);
+    let mut is_certain = true;
+    for place in count - declared.1.kinks..count {
+        let range = |values: &S::Room<TaylorModel>| values.as_slice()[place].range();
+        let (before, now, floor) = (range(&start), range(&along), range(&rounding).width());
+        let (is_above, is_below) = (before.lo > floor, before.hi < -floor);
+        let (rises, falls) = (now.lo > floor, now.hi < -floor);
+        if (rises && !is_above) || (falls && !is_below) {
+            return Some(true);
+        }
+        is_certain &= (is_above || now.hi <= floor) && (is_below || now.lo >= -floor);
+    }
+    is_certain.then_some(false)
 }
 
 /// The lists of conditions that determine if a surface counts, its own list first.
@@ -219,10 +266,10 @@ pub(super) fn counts_throughout<S: Declared>(
     let Some(declared) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
-    let count = lists(declared).map(<[Condition]>::len).sum::<usize>();
-    if count == 0 {
+    if lists(declared).all(<[Condition]>::is_empty) {
         return Some(true);
     }
+    let count = signs(declared);
     let at = At {
         parameters,
         t,
@@ -368,6 +415,24 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
         counts_along(self, surface, along, rounding)
+    }
+
+    fn has_kinks(&self, surface: usize) -> bool {
+        let Some((part, local)) = Part::of_surface(self, surface) else {
+            return false;
+        };
+        let declared = part.tables.surfaces.get(local);
+        declared.is_some_and(|declared| declared.kinks > 0)
+    }
+
+    fn passes_kink(
+        &self,
+        surface: usize,
+        start: Along<'_>,
+        along: Along<'_>,
+        rounding: Along<'_>,
+    ) -> Option<bool> {
+        passes_kink(self, surface, start, along, rounding)
     }
 
     #[inline]

@@ -198,8 +198,9 @@ pub(super) fn motion_rates(kernel: &mut Kernel<'_>, form: Form) -> Vec<Value> {
 }
 
 fn conditions(model: &Model, derivation: &Derivation, s: usize) -> Option<Function> {
-    let margins = &derivation.surfaces[s].margins;
-    (!margins.is_empty()).then(|| position_function(model, derivation, margins))
+    let surface = &derivation.surfaces[s];
+    let signs = [&*surface.margins, &surface.kinks].concat();
+    (!signs.is_empty()).then(|| position_function(model, derivation, &signs))
 }
 
 fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Function {
