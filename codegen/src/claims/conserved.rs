@@ -2,7 +2,7 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
-use super::continuity::{poles, possible_jump};
+use super::continuity::possible_jump;
 use super::defaults::Defaults;
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Evidence, Vanishing, Wording, evidence, in_arguments};
@@ -104,9 +104,8 @@ pub(super) fn jump(
     value: ExprId,
     seed: u64,
 ) -> Option<String> {
-    let parts = model.pool.reachable(&dynamics.roots());
-    let singular = poles(&mut model.pool, &parts);
-    possible_jump(model, value, &singular, &mut |model, part| {
+    let equations = dynamics.roots();
+    possible_jump(model, value, Some(&equations), &mut |model, part| {
         let rate = Rate {
             quantity: Quantity::of(model, part),
             dynamics,

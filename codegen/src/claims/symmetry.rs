@@ -155,7 +155,7 @@ fn check_commuting(
 fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
     let place = field
         .iter()
-        .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false))?;
+        .find_map(|expr| possible_jump(model, *expr, None, &mut |_, _| false))?;
     let text = format!("it is a symmetry where it is smooth, but it may jump {place}");
     Some(Verdict::Undecided(text))
 }
