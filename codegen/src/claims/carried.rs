@@ -28,6 +28,7 @@ use super::hybrid::Surroundings;
 use super::invariant::Stated;
 use super::passage::{Passage, Velocities, positions};
 use super::side::{imported, named_in, velocities_of};
+use super::sliding::may_slide;
 use super::symplectic::symplectic_form;
 use super::wall::Wall;
 use crate::mechanics::derive;
@@ -389,7 +390,7 @@ impl<'c> Carried<'c> {
         model: &Model,
         point: &mut P,
     ) -> Option<Option<Number<P>>> {
-        if !self.wall.passage.as_ref().is_some_and(Passage::may_slide) {
+        if !may_slide(self.wall) {
             return Some(None);
         }
         let field = point.field();

@@ -19,9 +19,7 @@
 //! 4. The equations contain the logarithm or a root of `B`, and `B` is strictly monotonic in a coordinate: the equations
 //!    have no real values on one side of its zeros, so that no motion crosses them.
 
-use dalembert_expr::{
-    ExprId, Function, Node, Pool, Singularity, SymbolId, Verdict as Zero,
-};
+use dalembert_expr::{ExprId, Function, Node, Pool, Singularity, SymbolId, Verdict as Zero};
 
 use super::regularity::domain;
 use crate::model::Model;
@@ -127,9 +125,8 @@ fn has_no_open_set_of_zeros(model: &mut Model, term: ExprId, variables: &[Symbol
     let coordinates = model.coordinates.iter();
     let known: Vec<SymbolId> = coordinates.flat_map(|it| [it.q, it.qdot]).collect();
     factors.into_iter().all(|factor| {
-        let is_free = (known.iter()).all(|symbol| {
-            variables.contains(symbol) || !model.pool.depends_on(factor, *symbol)
-        });
+        let is_free = (known.iter())
+            .all(|symbol| variables.contains(symbol) || !model.pool.depends_on(factor, *symbol));
         if model.pool.sign(factor).is_nonzero() {
             return true;
         }
@@ -193,9 +190,9 @@ fn ends_domain(model: &mut Model, equations: &[ExprId], id: ExprId) -> bool {
 fn has_gaps(model: &Model, id: ExprId) -> bool {
     let parts = model.pool.reachable(&[id]);
     parts.iter().any(|part| match model.pool.node(*part) {
-        Node::Product(factors) => factors.iter().any(|(base, power)| {
-            !power.is_integer() && !model.pool.sign(*base).is_nonnegative()
-        }),
+        Node::Product(factors) => factors
+            .iter()
+            .any(|(base, power)| !power.is_integer() && !model.pool.sign(*base).is_nonnegative()),
         Node::Call(function, argument) if function.singularity() == Singularity::Ends => {
             let order = model.pool.reachable(&[*argument]);
             let range = model.pool.enclose(&order, &domain(model, *argument));

@@ -5,8 +5,9 @@
 //! ```
 //!
 //! G is the gap rate, and c depends on the law. The change is not positive for c between 0 and 2. A projection onto
-//! linear constraints does not increase the energy, and a refraction keeps it. For all other maps, the two energies are
-//! compared as functions of the state. The claim is proved if they are equal, or if their difference is a function of
+//! linear constraints does not increase the energy, and a refraction keeps it. All this except for elastic impacts and
+//! refractions needs a metric that is certified to be positive definite ([`super::definite`]). Otherwise, the two
+//! energies are compared as functions of the state. The claim is proved if they are equal, or if their difference is a function of
 //! the positions plus a diagonal quadratic form of the velocities and neither is positive anywhere. It is refuted by a
 //! state at which the energy grows.
 //! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
@@ -14,12 +15,13 @@
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
 use super::bounds::is_never_negative;
+use super::definite::{has_kinetic_energy_of_squares, is_positive_definite};
 use super::evidence::Wording;
 use super::examine::explicit;
 use super::finding::{Certificate, Verdict};
 use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
-use super::passage::{Passage, Velocities};
+use super::passage::Passage;
 use super::regularity::domain;
 use super::wall::Wall;
 use crate::model::{Law, Model};
@@ -32,7 +34,8 @@ pub(super) fn check_not_increasing(
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
     let wall = Wall::of(model, around.derivation, surface, around.others);
-    if let Some(reason) = known(model, around, surface, &wall) {
+    let known = known(model, around, surface, &wall);
+    if let Some(Known { reason, .. }) = known.filter(|known| known.is_certain) {
         return proved(&name, reason);
     }
     let energy = model.pool.variable(model.derived.energy);
@@ -62,12 +65,22 @@ pub(super) fn check_not_increasing(
         help: ["leave it out".to_owned(), String::new()],
     };
     match found.verdict(true, wording, around.seed) {
+        // The energy grows only where the metric is not positive definite. The equations of motion do not exist there.
+        Verdict::Undecided(_) | Verdict::Refuted(_) if known.is_some() => {
+            Verdict::Undecided(format!(
+                "the law of `{name}` adds no energy if the metric is positive definite, which is not known at all \
+                 states; give ranges of parameters and coordinates, such as `m > 0`"
+            ))
+        }
         Verdict::Undecided(_) => Verdict::Undecided(format!(
             "no state was found at which the energy grows at `{name}`, and no proof that there is none"
         )),
         verdict => verdict,
     }
 }
+
+/// Reason for which laws without energy gain have none.
+const CONTRACTED: &str = "the gap rate is multiplied by a number between -1 and 1";
 
 fn proved(name: &str, reason: &str) -> Verdict {
     Verdict::Proved(Certificate::without_chance(
@@ -76,49 +89,74 @@ fn proved(name: &str, reason: &str) -> Verdict {
     ))
 }
 
-/// Reason for which the energy does not grow, if the law implies it.
+/// Reason for which a law does not increase the energy.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    reason: &'static str,
+    /// False if the reason needs a positive definite metric, and the metric is not certified to be one.
+    is_certain: bool,
+}
+
+/// Reason for which the energy does not grow, if the law implies it. Projections reduce the energy, and gaps have a
+/// positive inertia, only if the metric is positive definite.
 fn known(
-    model: &Model,
+    model: &mut Model,
     around: &Surroundings<'_>,
     surface: usize,
     wall: &Wall,
-) -> Option<&'static str> {
+) -> Option<Known> {
     let is_zero = |id: &ExprId| model.pool.is_syntactic_zero(*id);
     let declared = &model.surfaces[surface];
     let stands = is_zero(&around.derivation.surfaces[surface].rate);
-    let constraints = model.constraints.iter().chain(&declared.instantaneous);
-    let is_linear = constraints
-        .clone()
-        .all(|constraint| is_zero(&constraint.affine));
-    if !stands || !is_linear {
+    let mut constraints = model.constraints.iter().chain(&declared.instantaneous);
+    if !stands || !constraints.all(|constraint| is_zero(&constraint.affine)) {
         return None;
     }
-    match declared.law {
-        Law::Elastic => Some("an elastic impact keeps it, and a projection reduces it"),
+    let certain = |reason| {
+        Some(Known {
+            reason,
+            is_certain: true,
+        })
+    };
+    let reason = match declared.law {
+        Law::Elastic if declared.instantaneous.is_empty() => {
+            return certain("an elastic impact keeps it");
+        }
+        Law::Elastic => "an elastic impact keeps it, and a projection reduces it",
         Law::Restitution(e) | Law::Newton(e) => {
             let ranges = model
                 .pool
                 .enclose(&model.pool.reachable(&[e]), &domain(model, e));
             let range = ranges[e.index()]?;
             let is_contraction = -1.0 <= range.lo && range.hi <= 1.0;
-            is_contraction.then_some("the gap rate is multiplied by a number between -1 and 1")
+            is_contraction.then_some(CONTRACTED)?
         }
-        Law::NonholonomicPlastic | Law::ImpactPlastic | Law::TotallyPlastic => {
-            Some("the gap rate is multiplied by a number between -1 and 1")
-        }
+        Law::NonholonomicPlastic | Law::ImpactPlastic | Law::TotallyPlastic => CONTRACTED,
         Law::Transition => {
             let passage = wall.passage.as_ref()?;
             let mut affine = passage.after.forms.iter().filter_map(|row| row.last());
             let is_linear = affine.all(is_zero);
-            match passage.velocities {
-                Velocities::Nearest | Velocities::Refracted if is_linear => Some(
-                    "a refraction keeps it, and the nearest velocity that linear constraints allow has less",
-                ),
-                _ => None,
+            if !passage.computes_velocities() || !is_linear {
+                return None;
             }
+            if passage.after.forms.is_empty() {
+                return certain("a refraction keeps it, and so do equal momenta");
+            }
+            "a refraction keeps it, and the nearest velocity that linear constraints allow has less"
         }
-        Law::Reset | Law::Stop => None,
-    }
+        Law::Reset | Law::Stop => return None,
+    };
+    let metric = match &wall.passage {
+        Some(passage) => passage.after.metric.clone(),
+        None => model.lagrangian.metric.clone(),
+    };
+    let keeps_lagrangian = match &model.surfaces[surface].transition {
+        Some(transition) => transition.keeps_lagrangian,
+        None => true,
+    };
+    let is_certain = keeps_lagrangian && has_kinetic_energy_of_squares(model)
+        || is_positive_definite(model, &metric);
+    Some(Known { reason, is_certain })
 }
 
 /// True if the change of the energy is a function of the positions plus a diagonal quadratic form of the velocities, and

@@ -15,7 +15,7 @@ use super::passage::{Open, Passage};
 use super::potential::factor_text;
 use super::problem::Problem;
 use super::side::stated_density;
-use super::sliding::{may_slide, unless_it_slides};
+use super::sliding::{Return, may_slide, slides_where_it_returns, unless_it_slides};
 use super::wall::Wall;
 use crate::mechanics::{Derivation, derive};
 use crate::model::{Law, Model};
@@ -270,7 +270,8 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
         Law::Stop => "ends the motion".to_owned(),
         Law::Transition | Law::Reset => {
             let passage = wall.passage.as_ref();
-            let slides = passage.is_some_and(Passage::may_slide);
+            let returns = passage.map_or(Return::Never, Passage::returns);
+            let slides = returns == Return::Always;
             match passage.and_then(|passage| closed_form(model, passage)) {
                 Some(factor) if slides && model.pool.sign(factor).is_nonpositive() => {
                     "holds the motion, which reaches the surface from both sides, and maps the volume to 0"
@@ -279,6 +280,10 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
                 Some(factor) if slides => {
                     format!("multiplies it by {}", factor_text(&model.pool, factor))
                 }
+                Some(factor) if returns == Return::Perhaps => format!(
+                    "multiplies it by {}, or by 0 where the motion slides along the surface",
+                    size_text(&model.pool, factor)
+                ),
                 Some(factor) if model.pool.is_syntactic_zero(factor) => "maps it to 0".to_owned(),
                 Some(factor) => format!("multiplies it by {}", size_text(&model.pool, factor)),
                 None => "multiplies it by the determinant of its augmented differential".to_owned(),
@@ -375,8 +380,9 @@ impl AtImpact for Change<'_> {
     }
 
     /// True if terms with a sum other than 0 prove that the volume changes. Where the motion may slide, they do if the
-    /// Jacobian is positive, because the motion then crosses the surface. If the sign of the Jacobian is unknown, they
-    /// do if the volume before is not 0, because sliding maps it to 0. [`super::sliding`] examines motion that slides.
+    /// Jacobian is positive, because the motion then crosses the surface. If it is not known whether the motion slides,
+    /// they do if the volume before is not 0, because sliding maps it to 0. [`super::sliding`] examines motion that
+    /// slides.
     fn is_certain(&self, model: &Model, point: &mut BallPoint) -> bool {
         if !may_slide(self.wall) {
             return true;
@@ -385,8 +391,9 @@ impl AtImpact for Change<'_> {
             return false;
         };
         match jacobian.sign() {
-            Some(sign) => sign == Ordering::Greater,
-            None => {
+            Some(Ordering::Greater) => true,
+            Some(_) if slides_where_it_returns(self.wall) => false,
+            _ => {
                 let terms = self.terms(model, point, &[]);
                 terms.is_some_and(|terms| terms[1].sign().is_some())
             }

@@ -19,7 +19,7 @@
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `sliding.rs`, `landing.rs` | evidence at impacts; the change of a volume, also in closed form and with sliding; resets that keep the constraints |
-//! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
+//! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `definite.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta; certified signs, positive metrics |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of constant time: along the motion, across surfaces, with motion held behind them, on leaves of integrable constraints |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; as many conserved functions in involution as D has dimensions |
 //! | `together.rs` | several proofs that are needed together |
@@ -45,6 +45,7 @@ mod contraction;
 mod corollaries;
 mod darboux;
 mod defaults;
+mod definite;
 mod density;
 pub mod dynamics;
 mod elimination;

@@ -22,6 +22,7 @@ use super::linear::{dot, solve};
 use super::minors::{LARGEST, determinant};
 use super::refraction::refracted;
 use super::side::{Side, quantity_of_mode, velocities_of};
+use super::sliding::{Return, returns};
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
@@ -46,8 +47,8 @@ pub(super) struct Passage {
     qdot: Vec<SymbolId>,
     /// True if another mode is entered.
     leads_to_another_mode: bool,
-    /// True if a transition declares no map: the state stays.
-    is_kept: bool,
+    /// Whether the mode that is entered leads back to the surface.
+    returns: Return,
     /// Reason for which the change of volumes is not known, if it is not known.
     pub(super) open: Option<Open>,
 }
@@ -111,9 +112,7 @@ impl Passage {
         let reset = crossed.reset.clone();
         let (transition, q) = (crossed.transition.clone(), positions(model));
         let leads_to_another_mode = transition.is_some();
-        let is_kept = transition
-            .as_ref()
-            .is_some_and(|transition| transition.map.is_none());
+        let returns = returns(model, surface, others);
         let (after, positions, velocities) = match (reset, transition) {
             (Some(reset), _) => {
                 let replacements = reset.replacements(&model.coordinates);
@@ -154,7 +153,7 @@ impl Passage {
         let gap = (form.form.clone(), form.rate);
         Some(Self {
             leads_to_another_mode,
-            is_kept,
+            returns,
             ..Self::between(model, (before, after), positions, velocities, gap)
         })
     }
@@ -221,7 +220,7 @@ impl Passage {
             gap,
             qdot,
             leads_to_another_mode: false,
-            is_kept: false,
+            returns: Return::Never,
             open,
         }
     }
@@ -313,9 +312,9 @@ impl Passage {
         pairs.all(|(after, coordinate)| matches!(model.pool.node(*after), Node::Symbol(symbol) if *symbol == coordinate.q))
     }
 
-    /// True if a first-order system changes its mode and keeps its state. Where the motion then comes back, it slides.
-    pub(super) fn may_slide(&self) -> bool {
-        self.is_kept && self.before.rates.is_some()
+    /// Whether the mode that is entered leads back to the surface. Where the motion then comes back, it slides.
+    pub(super) fn returns(&self) -> Return {
+        self.returns
     }
 
     /// The expressions on which the velocities after the passage depend.

@@ -6,6 +6,10 @@
 //! ```
 //!
 //! The quotient does not use the densities of the two sides: a density may be negative where the motion crosses.
+//!
+//! Sliding needs a transition of the mode that is entered, back through the same surface. Without one, the motion goes on
+//! in that mode, on either side. If it is not known whether a transition leads back, verdicts are those that hold in
+//! both cases.
 
 use std::cmp::Ordering;
 
@@ -18,17 +22,99 @@ use super::evidence::Wording;
 use super::factor::closed_form;
 use super::finding::Verdict;
 use super::hybrid::Surroundings;
-use super::passage::Passage;
+use super::locus;
+use super::passage::{Passage, positions};
+use super::regularity::is_never_zero;
+use super::side::{imported, velocities_of};
 use super::wall::Wall;
-use crate::model::Model;
+use crate::model::{Beside, Model, Surface};
 
 /// Reason for a claim to stay open if the motion may slide.
 pub(super) const MAY_SLIDE: &str =
     "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
 
+/// Whether the mode that a transition enters leads back to the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Return {
+    /// No transition of that mode acts where it is entered.
+    Never,
+    /// Not known.
+    Perhaps,
+    /// One transition acts there, everywhere and in the opposite direction.
+    Always,
+}
+
+/// Whether the mode that a surface leads to leads back to it. [`Return::Never`] for surfaces at which no motion slides.
+pub(super) fn returns(model: &mut Model, surface: usize, others: &[&Model]) -> Return {
+    let crossed = &model.surfaces[surface];
+    let gap = crossed.gap;
+    let keeps_state = |surface: &Surface| {
+        let transition = surface.transition.as_ref();
+        transition.is_some_and(|transition| transition.map.is_none())
+    };
+    if !model.is_first_order() || !keeps_state(crossed) {
+        return Return::Never;
+    }
+    let enters = crossed.transition.as_ref().map(|to| to.enters);
+    let Some(entered) = enters.and_then(|enters| others.get(enters)) else {
+        return Return::Perhaps;
+    };
+    let opposite = model.pool.neg(gap);
+    let opposite = model.pool.text(opposite);
+    let acting: Vec<&Surface> = (entered.surfaces.iter())
+        .filter(|back| back.transition.is_some() && !is_elsewhere(model, gap, entered, back.gap))
+        .collect();
+    match acting[..] {
+        [] => Return::Never,
+        [back] => {
+            let target = back
+                .transition
+                .as_ref()
+                .and_then(|to| others.get(to.enters));
+            let leads_back = target.is_some_and(|target| target.name == model.name);
+            let is_opposite = entered.pool.text(back.gap) == opposite;
+            let counts = back.conditions.is_empty() && back.beside == Beside::Independent;
+            match leads_back && is_opposite && counts && keeps_state(back) {
+                true => Return::Always,
+                false => Return::Perhaps,
+            }
+        }
+        _ => Return::Perhaps,
+    }
+}
+
+/// True if the gap `other` of another mode is certain not to be 0 where `gap` is 0.
+fn is_elsewhere(model: &mut Model, gap: ExprId, entered: &Model, other: ExprId) -> bool {
+    let state = (positions(model), velocities_of(model));
+    let Some(other) = imported(model, entered, (&state.0, &state.1), &[other]) else {
+        return false;
+    };
+    let pool = &mut model.pool;
+    let mut candidates = vec![pool.add(other[0], gap), pool.sub(other[0], gap)];
+    if let Some(solution) = locus::solution(model, gap) {
+        candidates.push(model.pool.substitute(other[0], &[solution]));
+    }
+    candidates.into_iter().any(|candidate| {
+        let candidate = model.pool.simplify(candidate);
+        is_never_zero(model, candidate)
+    })
+}
+
+/// Whether the mode behind a wall leads back to it.
+fn return_to(wall: &Wall) -> Return {
+    wall.passage
+        .as_ref()
+        .map_or(Return::Never, Passage::returns)
+}
+
 /// True if the motion that comes to a wall may slide along it.
 pub(super) fn may_slide(wall: &Wall) -> bool {
-    wall.passage.as_ref().is_some_and(Passage::may_slide)
+    return_to(wall) != Return::Never
+}
+
+/// True if the motion slides along a wall wherever the gap rate behind it is positive.
+pub(super) fn slides_where_it_returns(wall: &Wall) -> bool {
+    return_to(wall) == Return::Always
 }
 
 /// Adapts the verdict on the factor of a volume, which holds where the motion crosses the surface: where it slides, the
@@ -43,6 +129,15 @@ pub(super) fn unless_it_slides(
     if !may_slide(wall) || matches!(verdict, Verdict::Refuted(_)) {
         return verdict;
     }
+    let unless_it_crosses = |model: &mut Model, verdict| match verdict {
+        Verdict::Proved(_) if !always_goes_on(model, wall) => {
+            Verdict::Undecided(MAY_SLIDE.to_owned())
+        }
+        verdict => verdict,
+    };
+    if !slides_where_it_returns(wall) {
+        return unless_it_crosses(model, verdict);
+    }
     let question = Slides { wall, claimed };
     let name = &model.surfaces[surface].name.display;
     let wording = Wording {
@@ -53,12 +148,9 @@ pub(super) fn unless_it_slides(
         ..Wording::default()
     };
     let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
-    match (found.verdict(true, wording, around.seed), verdict) {
-        (refuted @ Verdict::Refuted(_), _) => refuted,
-        (_, Verdict::Proved(_)) if !always_goes_on(model, wall) => {
-            Verdict::Undecided(MAY_SLIDE.to_owned())
-        }
-        (_, verdict) => verdict,
+    match found.verdict(true, wording, around.seed) {
+        refuted @ Verdict::Refuted(_) => refuted,
+        _ => unless_it_crosses(model, verdict),
     }
 }
 
