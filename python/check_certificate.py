@@ -1077,16 +1077,22 @@ class Crossing:
         return [Decimal(1), *model.velocities(state), *(acceleration[i] for i in self.independent(side))]
 
     def factor(self, densities):
-        """The factor of the volume; 0 if a first-order motion slides, because the gap rates on both sides differ in sign."""
+        """The factor of the volume; 0 if a first-order motion slides: the gap rates on both sides differ in sign, and a transition leads back."""
         ends = list(zip(self.models, (self.before, self.after), self.dependent))
         weights = [Decimal(1) if mode.rates else mode.weight(state, dependent) for mode, state, dependent in ends]
         values = [density(state) * weight for density, (_, state, _), weight in zip(densities, ends, weights)]
         jacobian = determinant([item[1:] for item in self.columns[1:]])
         transition = self.surface["transition"]
         may_slide = self.models[0].rates and transition is not None and transition["state"] is None
-        if may_slide and jacobian < 0:
+        if may_slide and jacobian < 0 and self.comes_back():
             return Decimal(0)
         return abs(jacobian * values[1] / values[0])
+
+    def comes_back(self):
+        """True if a transition of the mode that is entered acts where it is entered."""
+        entered = self.models[1]
+        gaps = (entered.names.compile(item["gap"]) for item in entered.surfaces if item["transition"] is not None)
+        return any(abs(gap(self.after)) < entered.precision.h for gap in gaps)
 
     def form_defects(self):
         """The change of `dp dq - dH dt`, without constraints."""

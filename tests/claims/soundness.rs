@@ -100,6 +100,101 @@ fn a_rate_of_zero_does_not_hide_a_jump() {
     free("density = 1/abs(dot(x))^3", Proved);
 }
 
+/// The motion passes `x = 0`, where the equations have a limit or are bounded.
+#[test]
+fn a_denominator_of_the_equations_hides_no_jump() {
+    const AT_ZERO: Outcome = Undecided("it may jump where `x` is 0");
+    let plane = |rest: &str| format!("coordinates {{ x; y; }} {rest}");
+    let of_potential =
+        |term: &str| plane(&format!("lagrangian = (dot(x)^2 + dot(y)^2)/2 + {term};"));
+    let of_field = |rate: &str| plane(&format!("field {{ dot(x) = 1; dot(y) = {rate}; }}"));
+    for declared in [
+        of_potential("sin(x)/x"),
+        of_potential("x^2/x"),
+        of_potential("x/sqrt(x^2)*y"),
+        plane("lagrangian = (dot(x)^2 + dot(y)^2)/2; forces { f: sin(x)/x*d(y); }"),
+    ] {
+        check(&declared, "conserved: dot(x) - dot(x) + abs(x)/x", AT_ZERO);
+    }
+    check(
+        &of_potential("sin(x)/x"),
+        "conserved: energy*abs(x)/x",
+        AT_ZERO,
+    );
+    for rate in ["(1 - cos(x))/x^2", "sin(x)/x", "abs(x)/x"] {
+        check(&of_field(rate), "conserved: abs(x)/x", AT_ZERO);
+        check(
+            &of_field(rate),
+            "invariant: (2 + abs(x)/x)*d(x)^d(y)",
+            AT_ZERO,
+        );
+        let density = Undecided("may jump where `x` is 0");
+        check(&of_field(rate), "density = 2 + abs(x)/x", density);
+    }
+    check(
+        &of_field("x/abs(x)"),
+        "conserved: x/abs(x)",
+        Undecided("where `abs(x)` is 0"),
+    );
+    check(
+        &of_potential("tan(x)*cos(x)"),
+        "conserved: atan(tan(x)) - x",
+        Undecided("at the poles of `tan(x)`"),
+    );
+    // The constraint leads every motion through the origin.
+    check(
+        &plane("lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { c: x*dot(y) = y*dot(x); }"),
+        "conserved: x/sqrt(x^2 + y^2)",
+        Undecided("where `x^2 + y^2` is 0"),
+    );
+    // All motions are straight lines through the origin, at which these equations have no limit.
+    check(
+        &plane("field { dot(x) = x^2/(x^2 + y^2); dot(y) = x*y/(x^2 + y^2); }"),
+        "conserved: x/sqrt(x^2 + y^2)",
+        Undecided("where `x^2 + y^2` is 0"),
+    );
+    check(
+        &plane("field { dot(x) = x/t; dot(y) = y/t; }"),
+        "conserved: x/sqrt(x^2 + y^2)",
+        Undecided("where `x^2 + y^2` is 0"),
+    );
+}
+
+/// `y = 0` is a motion, along which the root has no rate.
+#[test]
+fn where_a_root_has_no_rate_it_may_change() {
+    let field =
+        |rate: &str| format!("coordinates {{ x; y; }} field {{ dot(x) = 1; dot(y) = {rate}; }}");
+    let stays = Undecided("where `y` is 0");
+    check(&field("2*x*sqrt(y)"), "conserved: sqrt(y) - x^2/2", stays);
+    check(&field("sqrt(y)"), "conserved: x - 2*sqrt(y)", stays);
+    check(&field("2*y"), "conserved: exp(-x)*sqrt(y)", Proved);
+}
+
+#[test]
+fn denominators_that_no_motion_passes_are_harmless() {
+    let plane = "coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;";
+    check(plane, "conserved: sqrt((x^2 + y^2)^2)/(x^2 + y^2)", Proved);
+    let bodies = "coordinates { x1; y1; x2; y2; } parameters { k > 0 = 1; }
+        let r = sqrt((x1 - x2)^2 + (y1 - y2)^2);
+        let l = (x1 - x2)*dot(y1 - y2) - (y1 - y2)*dot(x1 - x2);
+        lagrangian = (dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2)/2 + k/r;";
+    check(
+        bodies,
+        "conserved: l*dot(y1 - y2) - 2*k*(x1 - x2)/r",
+        Proved,
+    );
+    check(bodies, "conserved: energy*abs(r)/r", Proved);
+    let root = "coordinates { x; y; } field { dot(x) = 1; dot(y) = -sqrt(y); }";
+    check(root, "conserved: abs(y)/y", Proved);
+    // A root has no value between -1/10 and 1/10, and the quotient differs on both sides.
+    check(
+        "coordinates { x; y; } field { dot(x) = 1; dot(y) = 0; }",
+        "conserved: x*abs(x)/(1/100 + sqrt(x^2 - 1/100)^2)",
+        Undecided("it may jump"),
+    );
+}
+
 #[test]
 fn absolute_values_are_those_of_real_numbers() {
     free("conserved: abs(dot(x))", Proved);

@@ -5,22 +5,21 @@
 //! a branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or
 //! in the cut of `atan2`, a branch may change.
 //!
+//! A root has no rate where its argument is 0, and a motion may stay there: `y = 0` is a motion of `dot(x) = 1`,
+//! `dot(y) = sqrt(y)`, along which `x - 2*sqrt(y)` is not constant. This needs equations that are not regular. Otherwise
+//! motions off that set are near, and the quantity is constant along all.
+//!
 //! That the equations of motion have the same denominator does not exclude a jump: `sin(x)/x` has a value at `x = 0` in
 //! the limit, and a motion passes there. The denominator `B` of a quantity excludes a jump in four cases.
 //!
 //! 1. `B` has a sign that excludes 0, and exists everywhere.
 //! 2. `B` is constant along every motion.
-//! 3. `B` is 0 only in a set of codimension 2 in the states: it is a sum of terms without negative values, two of which
-//!    depend on different coordinates or velocities, such as `x^2 + y^2`. The states whose motions meet such a set form
-//!    a set of codimension 1, so that other motions are dense, and along them the quantity is constant. Where the
-//!    motion depends continuously on its start, it is therefore constant on all of them. Where it does not, as in a
-//!    collision of two bodies, the equations determine no motion beyond the set. Constraints may tie the coordinates
-//!    or velocities to each other: `x*dot(y) = y*dot(x)` leads all motions to the origin. They exclude this case.
-//! 4. The equations contain the logarithm or a root of `B`, and `B` is strictly monotonic in a coordinate: the equations
-//!    have no real values on one side of its zeros, so that no motion crosses them.
+//! 3. The equations are regular everywhere, and `B` is 0 only in a set of codimension 2.
+//! 4. No motion passes the zeros of `B`. See [`super::barriers`] for this case and the case before it.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Singularity, SymbolId, Verdict as Zero};
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign, Singularity};
 
+use super::barriers::{has_continuous_flow, is_barrier};
 use super::regularity::domain;
 use crate::model::Model;
 
@@ -48,6 +47,18 @@ pub(super) fn possible_jump(
             }
         }
     }
+    if let Some(equations) = equations
+        && !has_continuous_flow(model, equations)
+    {
+        for id in infinite_slopes(&mut model.pool, &parts) {
+            let is_harmless = model.pool.sign(id) == Sign::Positive
+                || is_barrier(model, equations, id)
+                || is_constant(model, id);
+            if !is_harmless {
+                return Some(format!("where `{}` is 0", model.pool.text(id)));
+            }
+        }
+    }
     for id in poles(&mut model.pool, &parts) {
         let is_harmless = model.pool.sign(id).is_nonzero() && !has_gaps(model, id)
             || equations.is_some_and(|equations| is_barrier(model, equations, id))
@@ -63,131 +74,9 @@ pub(super) fn possible_jump(
     None
 }
 
-/// True if no motion passes the zeros of `denominator`, or only motions that are limits of others.
-fn is_barrier(model: &mut Model, equations: &[ExprId], denominator: ExprId) -> bool {
-    let variables = state_variables(model);
-    let is_thin = is_thin(model, denominator, &variables) && !has_gaps(model, denominator);
-    is_thin || ends_domain(model, equations, denominator)
-}
-
-/// Coordinates and velocities that may be chosen freely; none in models with constraints, which may tie them.
-fn state_variables(model: &Model) -> Vec<SymbolId> {
-    if !model.constraints.is_empty() {
-        return Vec::new();
-    }
-    let positions = model.coordinates.iter().map(|coordinate| coordinate.q);
-    let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
-    match model.is_first_order() {
-        true => positions.collect(),
-        false => positions.chain(velocities).collect(),
-    }
-}
-
-/// True if the zeros of a function of the state are certain to have codimension 2 or more.
-fn is_thin(model: &mut Model, id: ExprId, variables: &[SymbolId]) -> bool {
-    match model.pool.node(id).clone() {
-        Node::Product(factors) => factors.iter().all(|(base, exponent)| {
-            exponent.is_negative()
-                || model.pool.sign(*base).is_nonzero()
-                || is_thin(model, *base, variables)
-        }),
-        Node::Call(Function::Abs, argument) => is_thin(model, argument, variables),
-        Node::Sum { constant, terms } => {
-            let is_sum_without_negative_values = !constant.is_negative()
-                && terms.iter().all(|(factor, term)| {
-                    !factor.is_negative() && model.pool.sign(*term).is_nonnegative()
-                });
-            if !is_sum_without_negative_values {
-                return false;
-            }
-            let terms: Vec<ExprId> = (terms.iter().map(|(_, term)| *term))
-                .filter(|term| has_no_open_set_of_zeros(model, *term, variables))
-                .collect();
-            let pool = &model.pool;
-            let share = |one: ExprId, other: ExprId| {
-                let both = |by: &SymbolId| pool.depends_on(one, *by) && pool.depends_on(other, *by);
-                let every = model.coordinates.iter().flat_map(|it| [it.q, it.qdot]);
-                every.into_iter().any(|symbol| both(&symbol))
-            };
-            (1..terms.len()).any(|i| terms[..i].iter().any(|term| !share(*term, terms[i])))
-        }
-        _ => false,
-    }
-}
-
-/// True if a term is certain not to be 0 on an open set of states, for all values of parameters. Each of its factors is
-/// strictly monotonic in a variable, or analytic, not constant and free of parameters.
-fn has_no_open_set_of_zeros(model: &mut Model, term: ExprId, variables: &[SymbolId]) -> bool {
-    let factors = match model.pool.node(term) {
-        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
-        _ => vec![term],
-    };
-    let coordinates = model.coordinates.iter();
-    let known: Vec<SymbolId> = coordinates.flat_map(|it| [it.q, it.qdot]).collect();
-    factors.into_iter().all(|factor| {
-        let is_free = (known.iter())
-            .all(|symbol| variables.contains(symbol) || !model.pool.depends_on(factor, *symbol));
-        if model.pool.sign(factor).is_nonzero() {
-            return true;
-        }
-        is_free
-            && variables.iter().any(|by| {
-                let slope = model.pool.diff(factor, *by);
-                is_strict(model, slope)
-                    || is_analytic_in(model, factor, variables)
-                        && model.pool.zero_test(slope) == Zero::Refuted
-            })
-    })
-}
-
-/// True if a slope exists everywhere and is not 0.
-fn is_strict(model: &Model, slope: ExprId) -> bool {
-    let parts = model.pool.reachable(&[slope]);
-    model.pool.sign(slope).is_nonzero()
-        && (parts.iter()).all(|part| {
-            let node = model.pool.node(*part);
-            matches!(node, Node::Number(_) | Node::Pi | Node::Symbol(_))
-                || matches!(node, Node::Product(factors) if factors.iter().all(|(_, power)| power.is_integer() && !power.is_negative()))
-        })
-}
-
-/// True if an expression is a polynomial in some symbols and their sines, cosines and exponentials.
-fn is_analytic_in(model: &Model, id: ExprId, variables: &[SymbolId]) -> bool {
-    let parts = model.pool.reachable(&[id]);
-    parts.iter().all(|part| match model.pool.node(*part) {
-        Node::Symbol(symbol) => variables.contains(symbol),
-        Node::Product(factors) => factors
-            .iter()
-            .all(|(_, power)| power.is_integer() && !power.is_negative()),
-        Node::Call(function, _) => {
-            function.singularity() == Singularity::None && !function.chooses_branch()
-        }
-        Node::Atan2(..) => false,
-        Node::Number(_) | Node::Pi | Node::Sum { .. } => true,
-    })
-}
-
-/// True if the equations have no real values on one side of the zeros of an expression.
-fn ends_domain(model: &mut Model, equations: &[ExprId], id: ExprId) -> bool {
-    let parts = model.pool.reachable(equations);
-    let needs_sign = parts.iter().any(|part| match model.pool.node(*part) {
-        Node::Product(factors) => factors
-            .iter()
-            .any(|(base, power)| *base == id && !power.is_integer()),
-        Node::Call(Function::Ln, argument) => *argument == id,
-        _ => false,
-    });
-    let coordinates: Vec<SymbolId> = model.coordinates.iter().map(|it| it.q).collect();
-    needs_sign
-        && coordinates.into_iter().any(|by| {
-            let slope = model.pool.diff(id, by);
-            is_strict(model, slope)
-        })
-}
-
 /// True if an expression may have no real value at some states: outside of the domain of a root or of an inverse
 /// function. On two sides of such states its values may differ.
-fn has_gaps(model: &Model, id: ExprId) -> bool {
+pub(super) fn has_gaps(model: &Model, id: ExprId) -> bool {
     let parts = model.pool.reachable(&[id]);
     parts.iter().any(|part| match model.pool.node(*part) {
         Node::Product(factors) => factors
@@ -209,6 +98,28 @@ fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
         Node::Atan2(..) => true,
         Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => false,
     }
+}
+
+/// Functions at whose zeros a root or an inverse function has an infinite slope.
+fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
+    let mut found = Vec::new();
+    for id in parts {
+        match pool.node(*id).clone() {
+            Node::Product(factors) => {
+                let roots = factors.iter().filter(|(_, power)| {
+                    !power.is_integer() && !power.is_negative() && *power < Rational::ONE
+                });
+                found.extend(roots.map(|(base, _)| *base));
+            }
+            Node::Call(function, argument) if function.singularity() == Singularity::Ends => {
+                let square = pool.pow(argument, Rational::from(2));
+                let one = pool.one();
+                found.push(pool.sub(one, square));
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 /// Denominators, arguments of logarithms, and tangents.

@@ -3,7 +3,8 @@
 //! If the volume is smooth and each impulse vanishes with the gap rate, impacts accumulate for almost no start (W.
 //! Clark, thesis, Theorem VII.17). If moreover the energy is conserved and its levels are compact, almost every motion
 //! comes back arbitrarily near to its start (Theorem VII.21). The levels are compact where surfaces bound all
-//! coordinates that are not angles, the metric is positive and the potential finite.
+//! coordinates that are not angles, the metric is positive and the potential finite. A Lagrangian that may be infinite
+//! somewhere, such as `dot(x)^2/(x - 1/2)^2`, has no such consequence: its levels and their volumes may be infinite.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
@@ -33,7 +34,10 @@ pub(super) fn corollaries(
     let Some(bounds) = bounded(model) else {
         return found;
     };
-    if is_autonomous(model, around) && keeps_energy(model, around) {
+    if model.pool.is_finite(model.lagrangian.whole)
+        && is_autonomous(model, around)
+        && keeps_energy(model, around)
+    {
         let bounds = match bounds.is_empty() {
             true => "all coordinates are angles".to_owned(),
             false => format!(

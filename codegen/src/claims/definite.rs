@@ -30,6 +30,20 @@ pub(super) fn is_positive_definite(model: &mut Model, metric: &[Vec<ExprId>]) ->
     })
 }
 
+/// True if a metric is certified to be regular at all states.
+pub(super) fn is_regular(model: &mut Model, metric: &[Vec<ExprId>]) -> bool {
+    blocks(&model.pool, metric).into_iter().all(|block| {
+        let row = |i: &usize| block.iter().map(|j| metric[*i][*j]).collect();
+        let rows: Vec<Vec<ExprId>> = block.iter().map(row).collect();
+        let columns: Vec<usize> = (0..block.len()).collect();
+        block.len() <= LARGEST && {
+            let determinant = determinant(&mut model.pool, &rows, &columns);
+            let determinant = tidy(&mut model.pool, determinant);
+            model.pool.sign(determinant).is_nonzero()
+        }
+    })
+}
+
 /// True if the terms of the Lagrangian that are quadratic in velocities are never negative.
 pub(super) fn has_kinetic_energy_of_squares(model: &mut Model) -> bool {
     let velocities: Vec<SymbolId> = model.coordinates.iter().map(|it| it.qdot).collect();

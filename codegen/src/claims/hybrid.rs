@@ -107,7 +107,15 @@ fn effect(
     let text = match (&verdict, is_stated) {
         (Verdict::Proved(_), _) => "keeps it".to_owned(),
         (Verdict::Refuted(witness), true) => changed(witness),
-        (Verdict::Refuted(_), false) => factor(model, surface, &wall),
+        (Verdict::Refuted(witness), false) => {
+            let one = model.pool.one();
+            let passage = wall.passage.as_ref();
+            match passage.and_then(|passage| closed_form(model, passage)) {
+                // The densities of the two modes differ.
+                Some(factor) if factor == one => changed(witness),
+                _ => factor(model, surface, &wall),
+            }
+        }
         (Verdict::Undecided(_), false) => {
             format!("{}, unless that factor is 1", factor(model, surface, &wall))
         }

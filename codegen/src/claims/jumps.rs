@@ -9,6 +9,7 @@ use super::evidence::Wording;
 use super::finding::{Verdict, digits};
 use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
+use super::symmetry::lifted;
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
@@ -90,10 +91,30 @@ fn surface_is_kept(
     };
     let found = evidence_at_impact(model, &wall, around.dynamics, &question, around.seed);
     match found.verdict(true, Wording::default(), around.seed) {
+        Verdict::Proved(_) if !keeps_conditions(model, around, surface, field) => "",
         Verdict::Proved(_) => " keeps the symmetry and",
         Verdict::Refuted(_) => " breaks the symmetry and",
         Verdict::Undecided(_) => "",
     }
+}
+
+/// True if the flow is known to keep the conditions under which a surface counts, and the coefficient of its law.
+fn keeps_conditions(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    field: &[ExprId],
+) -> bool {
+    let directions = lifted(model, field);
+    let coefficient = match model.surfaces[surface].law {
+        Law::Restitution(e) | Law::Newton(e) => Some(e),
+        _ => None,
+    };
+    let margins = around.derivation.surfaces[surface].margins.iter().copied();
+    margins.chain(coefficient).all(|margin| {
+        let rate = model.pool.derivative_along(margin, &directions);
+        model.pool.zero_test(rate) == Zero::Proved
+    })
 }
 
 /// The value of a one-form on the field.

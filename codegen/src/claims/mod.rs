@@ -32,6 +32,7 @@
 
 mod alternatives;
 mod ansatz;
+mod barriers;
 mod bounds;
 mod branches;
 mod carried;

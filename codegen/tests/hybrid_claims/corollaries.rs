@@ -71,6 +71,19 @@ fn unbounded_motion_is_not_reported_as_recurrent() {
 }
 
 #[test]
+fn where_metric_or_potential_are_infinite_no_recurrence_is_reported() {
+    let on_circle = |lagrangian: &str| {
+        format!("Circle {{ coordinates {{ a: angle; }} lagrangian = {lagrangian}; CLAIM }}")
+    };
+    check(&on_circle("dot(a)^2/2 + cos(a)"), KEPT, [false, true]);
+    check(&on_circle("dot(a)^2/2/(1 + cos(a))^2"), KEPT, [false; 2]);
+    check(&on_circle("dot(a)^2/2 + tan(a)"), KEPT, [false; 2]);
+    let between = "Line { coordinates { x; } lagrangian = dot(x)^2/2/(x - 1/2)^2;
+        impacts { low: x >= 0; high: x <= 1; } CLAIM }";
+    check(between, KEPT, [true, false]);
+}
+
+#[test]
 fn motion_whose_energy_changes_is_not_reported_as_recurrent() {
     check(
         &particle("wall: 1 + sin(t)/2 - x^2 - y^2 >= 0;"),

@@ -1,6 +1,6 @@
 //! Tests of the claim `energy under s: not increasing`.
 
-use crate::Expected::{False, Open, Shown, True};
+use crate::Expected::{self, False, Open, Shown, True};
 use crate::check;
 use crate::systems::{ball, disk, grooves, media, particle};
 
@@ -111,4 +111,40 @@ fn unexplained_losses_of_energy_stay_open() {
         &under("wall"),
         Open("no state was found"),
     );
+}
+
+/// Where the metric is not positive definite, a projection may add energy, and so may a law that reduces the gap rate.
+#[test]
+fn laws_add_no_energy_only_with_a_positive_metric() {
+    const UNKNOWN: Expected = Open("if the metric is positive definite");
+    let wall = |metric: &str, law: &str| {
+        particle(&format!("wall: x >= 0 => {law};")).replace("dot(x)^2 + dot(y)^2", metric)
+    };
+    for law in ["newton(1/2)", "restitution(1/2)", "impact_plastic"] {
+        for metric in [
+            "dot(x)^2 + 4*dot(x)*dot(y) + dot(y)^2",
+            "dot(x)^2 + 2*y*dot(x)*dot(y) + dot(y)^2",
+            "(1 - y)*dot(x)^2 + dot(y)^2",
+            "d1*dot(x)^2 + dot(y)^2",
+        ] {
+            check(&wall(metric, law), &under("wall"), UNKNOWN);
+        }
+        for metric in [
+            "dot(x)^2 + dot(x)*dot(y) + dot(y)^2",
+            "a*dot(x)^2 + b*y^2*dot(y)^2",
+            "(a + b)*dot(x)^2 + a*dot(y)^2 + 2*a*cos(x - y)*dot(x)*dot(y)",
+            "(cos(x)*dot(x) + cos(y)*dot(y))^2 + (sin(x)*dot(x) + sin(y)*dot(y))^2 + b*dot(x)^2",
+        ] {
+            check(&wall(metric, law), &under("wall"), True);
+        }
+    }
+    check(
+        &wall("dot(x)^2 + 4*dot(x)*dot(y) + dot(y)^2", "elastic"),
+        &under("wall"),
+        True,
+    );
+    let grooves = grooves("dot(y) = 0", "dot(y) = 3*dot(x)");
+    check(&grooves, &under("rightward"), True);
+    let indefinite = grooves.replace("dot(y)^2)/2", "dot(y)^2 + 4*(x + 1)*dot(x)*dot(y))/2");
+    check(&indefinite, &under("rightward"), UNKNOWN);
 }

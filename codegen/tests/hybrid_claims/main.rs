@@ -13,6 +13,7 @@
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `symmetries.rs` | symmetries of the motion, the surfaces and their maps together, also in first-order systems |
 //! | `qualified.rs`, `momenta.rs` | remarks on impacts in proofs of densities, and in proofs of symmetries on their momenta |
+//! | `sliding.rs` | volumes where first-order motion slides along a surface, or goes on behind it |
 //! | `stops.rs` | surfaces at which the motion ends |
 //! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
@@ -35,6 +36,7 @@ mod qualified;
 mod quantities;
 mod reduction;
 mod shipped;
+mod sliding;
 mod stops;
 mod symmetries;
 mod symplectic;

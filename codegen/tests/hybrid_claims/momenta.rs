@@ -82,3 +82,21 @@ fn resets_and_gauge_symmetries_are_examined() {
         "{found}"
     );
 }
+
+/// The flow moves states at which the surface counts to states at which it does not.
+#[test]
+fn a_condition_that_the_flow_changes_is_no_symmetry_of_the_impact() {
+    let half = note(&particle("wall: x >= 0 when y > 0;"), "partial(y)");
+    assert!(
+        half.contains("an impact at wall keeps its momentum"),
+        "{half}"
+    );
+    let round = note(
+        &particle("wall: 1 - x^2 - y^2 >= 0 when x^2 + y^2 > 1/2;"),
+        TURN,
+    );
+    assert!(
+        round.contains("an impact at wall keeps the symmetry and keeps its momentum"),
+        "{round}"
+    );
+}

@@ -51,7 +51,7 @@ pub(super) fn crossing(right: [&str; 2], left: [&str; 2], density: &str) -> Stri
     let field = |[x, y]: [&str; 2]| format!("field {{ dot(x) = {x}; dot(y) = {y}; }}");
     format!(
         "pub Crossing {{ coordinates {{ x; y; }} modes {{ right {{ {} CLAIM }} left {{ {} claims {{ density = {density}; }} }} }}
-        transitions {{ leftward: right -> left when x <= 0; }} }}",
+        transitions {{ leftward: right -> left when x <= 0; rightward: left -> right when x >= 0; }} }}",
         field(right),
         field(left)
     )
