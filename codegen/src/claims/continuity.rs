@@ -6,8 +6,9 @@
 //! in the cut of `atan2`, a branch may change.
 //!
 //! A root has no rate where its argument is 0, and a motion may stay there: `y = 0` is a motion of `dot(x) = 1`,
-//! `dot(y) = sqrt(y)`, along which `x - 2*sqrt(y)` is not constant. This needs equations that are not regular. Otherwise
-//! motions off that set are near, and the quantity is constant along all.
+//! `dot(y) = sqrt(y)`, along which `x - 2*sqrt(y)` is not constant. This needs equations that are not regular, otherwise
+//! motions off that set are near, and the quantity is constant along all. It also needs an infinite slope: the slope of
+//! `sqrt(x^2 + y^2)` is bounded, so that its rate along neighbouring curves tends to 0.
 //!
 //! That the equations of motion have the same denominator does not exclude a jump: `sin(x)/x` has a value at `x = 0` in
 //! the limit, and a motion passes there. The denominator `B` of a quantity excludes a jump in four cases.
@@ -109,6 +110,9 @@ fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
                 let roots = factors.iter().filter(|(_, power)| {
                     !power.is_integer() && !power.is_negative() && *power < Rational::ONE
                 });
+                let roots = roots.filter(|(base, power)| {
+                    *power < Rational::HALF || !is_sum_of_squares(pool, *base)
+                });
                 found.extend(roots.map(|(base, _)| *base));
             }
             Node::Call(function, argument) if function.singularity() == Singularity::Ends => {
@@ -120,6 +124,19 @@ fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
         }
     }
     found
+}
+
+/// True for a sum of squares with positive coefficients.
+fn is_sum_of_squares(pool: &Pool, id: ExprId) -> bool {
+    let (constant, terms) = pool.linear_form(id);
+    let is_square = |term: ExprId| match pool.node(term) {
+        Node::Product(factors) => factors.iter().all(|(base, power)| {
+            *power == Rational::from(2) || pool.sign(*base) == Sign::Positive
+        }),
+        _ => pool.sign(term) == Sign::Positive,
+    };
+    !constant.is_negative()
+        && (terms.into_iter()).all(|(factor, term)| !factor.is_negative() && is_square(term))
 }
 
 /// Denominators, arguments of logarithms, and tangents.
