@@ -130,9 +130,9 @@ fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
 fn is_sum_of_squares(pool: &Pool, id: ExprId) -> bool {
     let (constant, terms) = pool.linear_form(id);
     let is_square = |term: ExprId| match pool.node(term) {
-        Node::Product(factors) => factors.iter().all(|(base, power)| {
-            *power == Rational::from(2) || pool.sign(*base) == Sign::Positive
-        }),
+        Node::Product(factors) => factors
+            .iter()
+            .all(|(base, power)| *power == Rational::from(2) || pool.sign(*base) == Sign::Positive),
         _ => pool.sign(term) == Sign::Positive,
     };
     !constant.is_negative()
