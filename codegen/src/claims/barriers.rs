@@ -14,7 +14,9 @@
 //! *Ends of the domain.* If the equations contain the logarithm or a root of `B`, and `B` is strictly monotonic in a
 //! coordinate, they have no real values on one side of its zeros. No motion passes to that side.
 
-use dalembert_expr::{ExprId, Function, Node, Sign, Singularity, SymbolId, Verdict as Zero};
+use dalembert_expr::{
+    ExprId, Function, Node, Rational, Sign, Singularity, SymbolId, Verdict as Zero,
+};
 
 use super::continuity::has_gaps;
 use super::definite::is_regular;
@@ -51,6 +53,62 @@ pub(super) fn has_continuous_flow(model: &mut Model, equations: &[ExprId]) -> bo
     };
     let metric = model.lagrangian.metric.clone();
     parts.iter().all(is_smooth) && (model.is_first_order() || is_regular(model, &metric))
+}
+
+/// True if no motion stays where a root with the argument `radicand` has no rate: the potential or the force is
+/// infinite there.
+pub(super) fn cannot_stay(model: &mut Model, radicand: ExprId) -> bool {
+    has_infinite_potential(model, radicand) || has_infinite_force(model, radicand)
+}
+
+/// True if the potential is a root of `radicand`, whose slope is infinite where it is 0, plus terms without roots.
+fn has_infinite_force(model: &mut Model, radicand: ExprId) -> bool {
+    let is_driven = model.is_first_order()
+        || !model.forces.is_empty()
+        || model.inputs().next().is_some()
+        || !model.constraints.is_empty();
+    let coordinates: Vec<SymbolId> = model.coordinates.iter().map(|it| it.q).collect();
+    let is_monotonic = coordinates.iter().any(|by| {
+        let slope = model.pool.diff(radicand, *by);
+        is_strict(model, slope)
+    });
+    if is_driven || !is_monotonic {
+        return false;
+    }
+    let pool = &model.pool;
+    let is_root = |(base, power): &(ExprId, Rational)| {
+        *base == radicand && !power.is_negative() && *power < Rational::ONE
+    };
+    let is_plain = |term: ExprId| {
+        let has_roots = |part: &ExprId| match pool.node(*part) {
+            Node::Product(factors) => factors.iter().any(|(_, power)| !power.is_integer()),
+            Node::Call(function, _) => function.singularity() != Singularity::None,
+            Node::Atan2(..) => true,
+            Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => false,
+        };
+        pool.is_finite(term) && !pool.reachable(&[term]).iter().any(has_roots)
+    };
+    let metric = model.lagrangian.metric.iter().flatten();
+    let mut others = metric.chain(&model.lagrangian.linear);
+    if !others.all(|entry| is_plain(*entry)) {
+        return false;
+    }
+    let (_, terms) = pool.linear_form(model.lagrangian.potential);
+    let others: Vec<ExprId> = (terms.into_iter().map(|(_, term)| term))
+        .filter(|term| !is_plain(*term))
+        .collect();
+    let [term] = others[..] else {
+        return false;
+    };
+    let Node::Product(factors) = pool.node(term) else {
+        return false;
+    };
+    let is_constant =
+        |base: ExprId| pool.sign(base).is_nonzero() && !pool.depends_on_any(base, &coordinates);
+    factors.iter().any(is_root)
+        && factors
+            .iter()
+            .all(|factor| is_root(factor) || is_constant(factor.0))
 }
 
 /// True if the potential is infinite where `denominator` is 0, the energy is conserved and the metric is finite. All

@@ -20,7 +20,7 @@
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign, Singularity};
 
-use super::barriers::{has_continuous_flow, is_barrier};
+use super::barriers::{cannot_stay, has_continuous_flow, is_barrier};
 use super::regularity::domain;
 use crate::model::Model;
 
@@ -53,7 +53,7 @@ pub(super) fn possible_jump(
     {
         for id in infinite_slopes(&mut model.pool, &parts) {
             let is_harmless = model.pool.sign(id) == Sign::Positive
-                || is_barrier(model, equations, id)
+                || cannot_stay(model, id)
                 || is_constant(model, id);
             if !is_harmless {
                 return Some(format!("where `{}` is 0", model.pool.text(id)));
