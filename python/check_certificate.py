@@ -478,6 +478,17 @@ class Model:
     def metric_at(self, state):
         return [[item(state) for item in row] for row in self.metric]
 
+    def admit(self, state):
+        """Refuses a state that no run has: the metric is not positive definite, or a coefficient of a law is outside [0, 1]."""
+        if self.rates is None:
+            g = self.metric_at(state)
+            if any(determinant([row[:k] for row in g[:k]]) <= 0 for k in range(1, self.n + 1)):
+                raise Unsuitable("the metric is not positive definite")
+        for surface in self.surfaces:
+            written = surface["coefficient"]
+            if written is not None and not 0 <= self.names.compile(written)(state) <= 1:
+                raise Unsuitable("a coefficient of a law is outside [0, 1]")
+
     def momentum_at(self, state):
         v, g = self.velocities(state), self.metric_at(state)
         return [dot(row, v) + item(state) for row, item in zip(g, self.linear)]
@@ -846,7 +857,9 @@ def states(model, source, test, count=STATES, at=None):
     answers = []
     for _ in range(ATTEMPTS):
         try:
-            answers.append(test(model.random_state(source, dict(at or []))))
+            state = model.random_state(source, dict(at or []))
+            model.admit(state)
+            answers.append(test(state))
         except (Unsuitable, InvalidOperation, DivisionByZero, Overflow, ZeroDivisionError):
             continue
         if len(answers) == count:

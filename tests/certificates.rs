@@ -230,7 +230,7 @@ const FORMS: &str = "
             right { field { dot(x) = -1; dot(y) = 0; } claims { density = y; density under leftward: factor = 1; } }
             left { field { dot(x) = -1; dot(y) = 0; } claims { density = -y; } }
         }
-        transitions { leftward: right -> left when x <= 0; }
+        transitions { leftward: right -> left when x <= 0; rightward: left -> right when x >= 0; }
     }";
 
 /// Brackets: canonical momenta in a magnetic field, affine constraints, integrable systems with and without walls.

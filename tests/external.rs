@@ -43,6 +43,7 @@ fn run(binary: &Path, arguments: &[&str], input: &str) -> Output {
 }
 
 #[test]
+#[ignore = "builds a crate of its own: `.ci/run` runs it"]
 fn a_users_crate_has_every_command_for_its_own_model() {
     let binary = build();
     let derived = run(&binary, &["derive", "inclined_skate"], "");

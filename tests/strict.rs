@@ -79,6 +79,7 @@ impl Build {
 }
 
 #[test]
+#[ignore = "builds a crate of its own: `.ci/run` runs it"]
 fn a_strict_run_has_the_stored_bits_unoptimised_and_optimised() {
     let optimised = OPTIMISED.output();
     assert_eq!(optimised, OPTIMISED.output(), "two runs differ");

@@ -145,6 +145,21 @@ fn a_symmetry_maps_positions_that_satisfy_the_equations_to_such() {
     check(
         ball,
         "symmetry: y*partial(z) - z*partial(y)",
-        Undecided("it does not at positions"),
+        Refuted("Euler-Lagrange expression of this rate along the velocity"),
     );
+    let heavy = "coordinates { x; y; z; } lagrangian = (dot(x)^2 + (1 + x)*dot(y)^2 + dot(z)^2)/2;
+        constraints { ball: x^2 + y^2 + z^2 = 1; }";
+    check(
+        heavy,
+        "symmetry: x*partial(y) - y*partial(x)",
+        Refuted("not linear in the velocities"),
+    );
+    // The rate -y z^3 is 0 where z is.
+    let circle = "coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 + x*z^3;
+        constraints { circle: x^2 + y^2 = 1; level: z = 0; }";
+    check(circle, "symmetry: x*partial(y) - y*partial(x)", Proved);
+    let drift = "coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 + t*dot(x);
+        constraints { line: y = 1; }";
+    check(drift, "symmetry: partial(x)", Proved);
+    check(drift, "symmetry: x*partial(x)", Refuted("not linear"));
 }

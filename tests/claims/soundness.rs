@@ -160,6 +160,48 @@ fn a_denominator_of_the_equations_hides_no_jump() {
     );
 }
 
+/// No run has a state at which the metric is not positive definite, or a coefficient of a law lies outside [0, 1].
+#[test]
+fn states_that_no_run_has_decide_nothing() {
+    const OPEN: Outcome = Undecided("");
+    let plane = |kinetic: &str, rest: &str| {
+        format!(
+            "coordinates {{ x; y; }} parameters {{ k = 1; c in [0, 1] = 1/2; }}
+            lagrangian = ({kinetic})/2; {rest}"
+        )
+    };
+    let half = plane("x*dot(x)^2 + dot(y)^2", "");
+    check(&half, "not conserved: (abs(x) - x)*y", OPEN);
+    check(&half, "conserved: (abs(x) - x)*y", OPEN);
+    check(&half, "not conserved: (2*abs(x) - x)*y", Proved);
+    let strip = plane("dot(x)^2 + 2*x*dot(x)*dot(y) + dot(y)^2", "");
+    check(&strip, "conserved: (abs(1 - x) - 1 + x)*y", OPEN);
+    check(
+        &strip,
+        "conserved: (abs(1/2 - x) - 1/2 + x)*y",
+        Refuted("d/dt"),
+    );
+    let scaled = plane("k*(dot(x)^2 + dot(y)^2)", "");
+    check(&scaled, "conserved: (abs(k) - k)*y", OPEN);
+    check(&scaled, "density = 1 + (abs(k) - k)*x^2", OPEN);
+    let hit = |law: &str| {
+        plane(
+            "k*(dot(x)^2 + dot(y)^2)",
+            &format!("impacts {{ w: x >= 0 => {law}; }}"),
+        )
+    };
+    let energy = "energy under w: not increasing";
+    check(&hit("reset { dot(x) = -c*dot(x); }"), energy, OPEN);
+    let grows = Refuted("the energy grows");
+    check(&hit("reset { dot(x) = -(1 + c)*dot(x); }"), energy, grows);
+    let newton = plane("dot(x)^2 + dot(y)^2", "impacts { w: x >= 0 => newton(k); }");
+    for quantity in ["(abs(k) - k)*dot(x)", "(abs(1 - k) - 1 + k)*dot(x)"] {
+        check(&newton, &format!("not conserved under w: {quantity}"), OPEN);
+        check(&newton, &format!("conserved: {quantity}*x"), OPEN);
+    }
+    check(&newton, "not conserved under w: dot(x)", Proved);
+}
+
 /// `y = 0` is a motion, along which the root has no rate.
 #[test]
 fn where_a_root_has_no_rate_it_may_change() {

@@ -1,10 +1,11 @@
 use dalembert::jet::Work;
-use dalembert::{Described, Dop853, Simulation, System, Tolerance};
 use dalembert_cli::Integrator;
-use dalembert_driver::accuracy::{NoChoice, Plan, TIMES, choose, measure};
+use dalembert_driver::accuracy::{NoChoice, Plan, Study, TIMES};
+use dalembert_driver::{
+    AnyModel, Contact, Form, Impact, OffConstraint, Origin, Piece, Rates, Settings, Watch,
+};
 
 use super::folder::Folder;
-use super::systems::{BouncingBall, Oscillator};
 use super::*;
 
 /// A plan that is quick to measure.
@@ -18,49 +19,78 @@ fn plan(until: f64) -> Plan {
     }
 }
 
+/// A state at rest, or with the given velocities.
+fn origin(q: &[f64]) -> Origin {
+    Origin {
+        q: q.to_vec(),
+        rates: Rates::Velocities(vec![0.0; q.len()]),
+        policy: OffConstraint::Error,
+    }
+}
+
+fn settings(until: f64) -> Settings {
+    Settings {
+        form: Form::Reduced,
+        integrator: Integrator::Dop853,
+        tol: 1e-10,
+        step: None,
+        max_step: None,
+        steps: None,
+        until,
+        impacts: None,
+        laws: Vec::new(),
+        policies: dalembert::Policies::default(),
+        projection: None,
+    }
+}
+
+fn measure(model: &dyn AnyModel, q: &[f64], plan: &Plan) -> Study {
+    let base = settings(plan.until);
+    model
+        .study(&origin(q), &base, plan, &mut |_| {})
+        .unwrap_or_else(|refusal| panic!("{refusal}"))
+}
+
+/// The oscillator that moves as `q[0] cos(t)` along x and as `q[1] cos(2 t)` along y if it starts at rest.
+fn oscillator() -> Box<dyn AnyModel> {
+    let mut model = systems::oscillator();
+    model.set_parameter(0, 4.0);
+    model
+}
+
 /// Keeps the largest difference from a closed form at the compared times.
-struct Closed<'a, F> {
-    system: &'a Oscillator,
+struct Closed<F> {
     until: f64,
     next: u64,
     worst: [f64; 2],
     solution: F,
 }
 
-impl<F: Fn(f64) -> [f64; 2]> dalembert::Observer<Oscillator> for Closed<'_, F> {
-    fn step(
-        &mut self,
-        segment: &mut dalembert::Segment<'_, <Oscillator as dalembert::VectorField>::State>,
-    ) -> std::ops::ControlFlow<()> {
+impl<F: Fn(f64) -> [f64; 2]> Watch for Closed<F> {
+    fn step(&mut self, piece: &dyn Piece) {
         while self.next < TIMES {
             let t = self.until * (self.next + 1) as f64 / TIMES as f64;
-            if t > segment.t_end() {
+            if t > piece.span().1 {
                 break;
             }
-            let q = self.system.position(&segment.at(t).unwrap());
+            let q = piece.at(t).q;
             let right = (self.solution)(t);
             for i in 0..2 {
                 self.worst[i] = self.worst[i].max((q[i] - right[i]).abs());
             }
             self.next += 1;
         }
-        std::ops::ControlFlow::Continue(())
     }
-}
 
-/// The oscillator that starts at rest at `q` and moves as `q[0] cos(t)` along x and as `q[1] cos(2 t)` along y.
-fn oscillator(q: [f64; 2]) -> (Oscillator, <Oscillator as dalembert::VectorField>::State) {
-    let mut system = Oscillator::with_defaults();
-    system.k = 4.0;
-    let state = system.state(0.0, &q.into(), &[0.0, 0.0].into()).unwrap();
-    (system, state)
+    fn impact(&mut self, _: Impact) {}
+
+    fn contact(&mut self, _: Contact) {}
 }
 
 #[test]
 fn a_measured_error_is_the_distance_from_the_closed_form() {
-    let until = 7.0;
-    let (system, state) = oscillator([1.0, 0.5]);
-    let study = measure(&system, &state, &plan(until)).unwrap();
+    let (until, model, start) = (7.0, oscillator(), [1.0, 0.5]);
+    let study = measure(&*model, &start, &plan(until));
     assert!(study.floor < 1e-14, "{:e}", study.floor);
     assert_eq!(study.samples.len(), 6);
     for sample in study
@@ -69,16 +99,17 @@ fn a_measured_error_is_the_distance_from_the_closed_form() {
         .filter(|it| it.integrator == Integrator::Dop853)
     {
         let mut closed = Closed {
-            system: &system,
             until,
             next: 0,
             worst: [0.0; 2],
             solution: |t: f64| [t.cos(), 0.5 * (2.0 * t).cos()],
         };
-        let stepper = Dop853::new(Tolerance::new(sample.tol).unwrap());
-        Simulation::new(&system, stepper, ())
-            .run(0.0, state, until, &mut closed)
-            .unwrap();
+        let settings = Settings {
+            tol: sample.tol,
+            ..settings(until)
+        };
+        let run = model.simulate(&origin(&start), &settings, &mut closed);
+        assert!(run.is_ok());
         // Errors are relative to the largest value at the compared times, which is nearly the amplitude.
         let expected = closed.worst[0].max(closed.worst[1] / 0.5);
         assert!(
@@ -92,9 +123,7 @@ fn a_measured_error_is_the_distance_from_the_closed_form() {
 
 #[test]
 fn runs_that_end_otherwise_are_no_choice() {
-    let ball = BouncingBall::with_defaults();
-    let state = ball.state(0.0, &[1.0].into(), &[0.0].into()).unwrap();
-    let study = measure(&ball, &state, &plan(3.0)).unwrap();
+    let study = measure(&*systems::ball(), &[1.0], &plan(3.0));
     assert!(study.impacts > 0);
     assert!(study.samples.iter().all(|sample| sample.agrees));
     let mut changed = study.clone();
@@ -112,8 +141,7 @@ fn runs_that_end_otherwise_are_no_choice() {
 #[test]
 fn an_error_of_nothing_at_all_ends_no_ladder() {
     // At rest every run is exact.
-    let (system, state) = oscillator([0.0, 0.0]);
-    let study = measure(&system, &state, &plan(2.0)).unwrap();
+    let study = measure(&*oscillator(), &[0.0, 0.0], &plan(2.0));
     let adaptive = study.samples.iter();
     let adaptive = adaptive.filter(|it| it.integrator == Integrator::Dop853);
     assert_eq!(adaptive.count(), 3);
@@ -122,11 +150,16 @@ fn an_error_of_nothing_at_all_ends_no_ladder() {
 
 #[test]
 fn the_choice_reaches_what_is_wanted_in_the_least_time() {
-    let (system, state) = oscillator([1.0, 0.5]);
-    let choice = choose(&system, &state, 2.0, 1e-7).unwrap();
+    let model = oscillator();
+    let wanted = Plan {
+        enough: Some(1e-7),
+        ..Plan::new(2.0)
+    };
+    let study = measure(&*model, &[1.0, 0.5], &wanted);
+    let choice = study.choose(1e-7).unwrap();
     assert!(choice.error <= 1e-7 && choice.microseconds > 0.0);
 
-    let study = measure(&system, &state, &plan(2.0)).unwrap();
+    let study = measure(&*model, &[1.0, 0.5], &plan(2.0));
     let error = study.choose(1e-30).unwrap_err().to_string();
     assert!(
         error.starts_with("no run has an error below 1e-30"),
@@ -140,8 +173,7 @@ fn the_choice_reaches_what_is_wanted_in_the_least_time() {
 
 #[test]
 fn of_nearly_equal_times_the_least_work_is_chosen() {
-    let (system, state) = oscillator([1.0, 0.5]);
-    let mut study = measure(&system, &state, &plan(2.0)).unwrap();
+    let mut study = measure(&*oscillator(), &[1.0, 0.5], &plan(2.0));
     for (i, sample) in study.samples.iter_mut().enumerate() {
         (sample.error, sample.work) = (1e-9, 100.0 - i as f64);
         sample.microseconds = 10.0 + i as f64;
@@ -154,7 +186,7 @@ fn of_nearly_equal_times_the_least_work_is_chosen() {
 
 #[test]
 fn measurements_end_with_their_budget_and_leave_no_case_untimed() {
-    let (system, state) = oscillator([1.0, 0.5]);
+    let model = oscillator();
     let plan = Plan {
         rounds: 1000,
         budget: std::time::Duration::ZERO,
@@ -162,7 +194,7 @@ fn measurements_end_with_their_budget_and_leave_no_case_untimed() {
         ..plan(2.0)
     };
     let begun = std::time::Instant::now();
-    let study = measure(&system, &state, &plan).unwrap();
+    let study = measure(&*model, &[1.0, 0.5], &plan);
     // A thousand rounds take two minutes.
     assert!(begun.elapsed() < std::time::Duration::from_secs(30));
     assert!(study.samples.iter().all(|it| it.microseconds.is_finite()));
@@ -210,8 +242,6 @@ fn runs_choose_their_integrator_unless_one_is_given() {
     assert_eq!(integrator(&ball, ""), "taylor");
     assert_eq!(integrator(&ball, "--integrator auto --tol 1e-4"), "taylor");
     assert_eq!(integrator(&ball, "--integrator dopri5"), "dopri5");
-    // The work of a system that is written by hand is not known.
-    assert_eq!(integrator("bouncing_ball", ""), "dop853");
     let refused = run(&format!("simulate {ball} --step 0.1"));
     assert_eq!(refused.exit, Exit::Refused);
     assert!(refused.errors.contains("--step"), "{}", refused.errors);

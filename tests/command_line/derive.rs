@@ -19,7 +19,7 @@ fn the_source_is_derived_again_in_every_format() {
 
 #[test]
 fn a_source_that_the_generator_refuses_is_an_error() {
-    let done = run("derive oscillator");
+    let done = run_over(&[systems::made_by_hand()], "", &["derive", "oscillator"]);
     assert_eq!(done.exit, Exit::Refused);
     assert!(
         done.errors.starts_with("error: derive: "),

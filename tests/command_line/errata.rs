@@ -27,7 +27,7 @@ fn a_command_that_fails_is_reported() {
         errors: &mut errors,
         terminal: false,
     };
-    let catalogue = Catalogue::of(list_of_models()).with_errata(ERRATA);
+    let catalogue = Catalogue::of(systems::entries().to_vec()).with_errata(ERRATA);
     let exit = catalogue.run_with(["dalembert", "errata"], &mut streams);
     let output = String::from_utf8(output).unwrap();
     assert_eq!(exit, Exit::Other, "{output}");

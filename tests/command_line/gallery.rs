@@ -64,7 +64,7 @@ fn run_line(line: &str) -> Done {
         errors: &mut errors,
         terminal: false,
     };
-    let catalogue = Catalogue::of(list_of_models()).with_figures(figures());
+    let catalogue = Catalogue::of(systems::entries().to_vec()).with_figures(figures());
     let exit = catalogue.run_with(line.split_whitespace(), &mut streams);
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Done {

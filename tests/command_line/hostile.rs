@@ -355,7 +355,7 @@ fn a_stream_that_closes_early_needs_no_message() {
         };
         let args = std::iter::once("dalembert").chain(line.split_whitespace());
         assert_eq!(
-            run_with(args, &list_of_models(), &mut streams),
+            run_with(args, systems::entries(), &mut streams),
             Exit::Other,
             "{line}"
         );

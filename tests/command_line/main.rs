@@ -1,4 +1,4 @@
-//! The command line from its arguments to its streams and exit status, over systems written by hand and over texts.
+//! The command line from its arguments to its streams and exit status.
 
 // Tests fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -26,7 +26,7 @@ mod systems;
 mod tables;
 mod verify;
 
-use dalembert_cli::{Entry, Exit, Streams, models, run_with};
+use dalembert_cli::{Entry, Exit, Streams, run_with};
 use serde_json::Value;
 
 /// Result of a command line.
@@ -44,13 +44,9 @@ impl Done {
     }
 }
 
-fn list_of_models() -> Vec<Entry> {
-    models![systems::BouncingBall, systems::Oscillator, systems::Bead]
-}
-
 /// Runs a command line given as words, with this standard input.
 fn run_on(input: &str, words: &[&str]) -> Done {
-    run_over(&list_of_models(), input, words)
+    run_over(systems::entries(), input, words)
 }
 
 /// Runs a command line over these models.

@@ -420,7 +420,7 @@ fn mistakes_in_expressions_are_shown_in_the_flag() {
     // A system written by hand may have no text.
     let words = "map oscillator --set k=1 --until 1 --vary x.1=0..1:3 --fail x>1".split(' ');
     let words: Vec<&str> = words.collect();
-    let done = run_on("", &words);
+    let done = run_over(&[systems::made_by_hand()], "", &words);
     assert_eq!(done.exit, Exit::Refused);
     assert!(
         done.errors.contains("expressions need the text"),

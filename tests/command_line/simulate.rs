@@ -186,7 +186,7 @@ fn work_and_impacts_are_no_errors_of_the_energy() {
             "pushed --step 0.01",
         ] {
             let line = format!("simulate {line} --integrator {integrator} --json -");
-            let models = [models![systems::BouncingBall], vec![pushed()]].concat();
+            let models = [systems::entries(), &[pushed()]].concat();
             let words: Vec<&str> = line.split_whitespace().collect();
             let done = run_over(&models, "", &words);
             assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
@@ -393,7 +393,7 @@ fn a_table_is_written_while_the_run_goes_on() {
         errors: &mut errors,
         terminal: false,
     };
-    let exit = run_with(line.split_whitespace(), &list_of_models(), &mut streams);
+    let exit = run_with(line.split_whitespace(), systems::entries(), &mut streams);
     assert_eq!(exit, Exit::Refused);
     let errors = String::from_utf8(errors).unwrap();
     assert!(errors.contains("standard streams"), "{errors}");
@@ -430,7 +430,7 @@ fn without_a_document_on_it_the_standard_output_has_a_summary() {
         "bouncing_ball",
         "done at t = 5",
         "2 (floor 2)",
-        "dop853",
+        "taylor",
         "accepted",
     ] {
         assert!(done.output.contains(part), "{part} in {}", done.output);

@@ -53,7 +53,7 @@ fn stability(words: &str) -> Done {
         errors: &mut errors,
         terminal: false,
     };
-    let catalogue = Catalogue::of(list_of_models()).with_suite(CASES.to_vec());
+    let catalogue = Catalogue::of(systems::entries().to_vec()).with_suite(CASES.to_vec());
     let args = ["dalembert", "stability"]
         .into_iter()
         .chain(words.split_whitespace());

@@ -1,16 +1,13 @@
 //! `--verify` and `accuracy` report no measured error for a run that misses an impact: it is not verified, even if
 //! every run misses the same impact.
 
-use dalembert::Described;
-use dalembert::erased::Erased;
-use dalembert_cli::Entry;
-use dalembert_driver::of_system;
+use dalembert_stability::text::Text;
 
-use super::systems::Unsure;
+use super::systems::missing;
 use super::*;
 
-dalembert::model! {
-    /// Two wheels joined by a rod of variable length.
+static ROD: Text = Text::new(
+    "/// Two wheels joined by a rod of variable length.
     pub TwoWheelsRod {
         coordinates { x1; x2; theta1; theta2; }
         parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
@@ -19,11 +16,11 @@ dalembert::model! {
         constraints { wheel1: d(x1) - r1*d(theta1) = 0; wheel2: d(x2) - r2*d(theta2) = 0; }
         impacts { rod_max: b - length >= 0; rod_min: length - a >= 0; }
         initial { x2 = 2; dot(theta1) = 1; dot(theta2) = -0.25; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Two wheels joined by a rod that is arrested at its extreme lengths.
+static ARRESTED: Text = Text::new(
+    "/// Two wheels joined by a rod that is arrested at its extreme lengths.
     pub TwoWheelsArrested {
         coordinates { x1; x2; theta1; theta2; }
         parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
@@ -38,40 +35,40 @@ dalembert::model! {
             longest: sliding -> arrested when length >= b;
             shortest: sliding -> arrested when length <= a;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point over a bump.
+static BUMP: Text = Text::new(
+    "/// A point over a bump.
     pub Bump {
         coordinates { x; y; }
         parameters { s > 0 = 0.1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y - exp(-(x/s)^2) >= 0; }
         initial { x = -1; y = 1/2; dot(x) = 1; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that falls on a peg.
+static PEG: Text = Text::new(
+    "/// A point that falls on a peg.
     pub Peg {
         coordinates { x; y; }
         parameters { r > 0 = 0.5826313654547983; g > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;
         impacts { peg: sqrt(x^2 + y^2) - r >= 0; }
         initial { x = 0.31066917005121814; y = 16.26406912456683; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A mass on a spring, with a wall slightly nearer than its amplitude.
+static SPRING: Text = Text::new(
+    "/// A mass on a spring, with a wall slightly nearer than its amplitude.
     pub Spring {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x^2/2;
         impacts { wall: 0.9999 - x >= 0; }
         initial { dot(x) = 1; }
-    }
-}
+    }",
+);
 
 /// A command line with the first impact of the right run.
 struct Case {
@@ -108,38 +105,19 @@ const CASES: [Case; 5] = [
     },
 ];
 
-/// The entry of a model, loaded from its text.
-fn loaded<M: Described>() -> Entry {
-    let description = M::DESCRIPTION;
-    Entry::of_text(description.name, description.source.value())
-}
-
 fn sure() -> Vec<Entry> {
-    vec![
-        loaded::<TwoWheelsRod>(),
-        loaded::<TwoWheelsArrested>(),
-        loaded::<Bump>(),
-        loaded::<Peg>(),
-        loaded::<Spring>(),
-    ]
-}
-
-/// The entry of a model with an event search that misses impacts.
-fn missing<M: Described>() -> Entry {
-    // NOTE: the code of a run is compiled once, for the erased system of all models.
-    Entry::of_system(M::DESCRIPTION, || {
-        let form = M::FORM.expect("a model with a form");
-        of_system(Unsure(Erased::<32>::of(form).expect("room")))
-    })
+    [&ROD, &ARRESTED, &BUMP, &PEG, &SPRING]
+        .map(Text::entry)
+        .to_vec()
 }
 
 /// The models of [`sure`] except the spring, with an event search that misses impacts.
 fn unsure() -> Vec<Entry> {
     vec![
-        missing::<TwoWheelsRod>(),
-        missing::<TwoWheelsArrested>(),
-        missing::<Bump>(),
-        missing::<Peg>(),
+        missing!(ROD),
+        missing!(ARRESTED),
+        missing!(BUMP),
+        missing!(PEG),
     ]
 }
 

@@ -88,9 +88,9 @@ pub fn compared() -> &'static [Compiled] {
     MODELS.get_or_init(|| {
         let mut models = compiled! {
             dalembert_models:
-            AppellHamel Chain4 ControlledBall MovingWallDisk RefractedParticle RimlessWheelFive RollingDisk SpringMassWalker TentMap
+            AppellHamel Chain4 ControlledBall RimlessWheelFive RollingDisk TentMap
         };
-        models.extend(compiled!(systems: AffineSleigh DampedSleigh OnePole WalkerWithMultiplier));
+        models.extend(compiled!(systems: AffineSleigh));
         models.push(Compiled::of::<Folded>());
         #[cfg(feature = "every_model")]
         {
@@ -98,13 +98,13 @@ pub fn compared() -> &'static [Compiled] {
                 dalembert_models:
                 BallOnRotatingTable BallOnSwitchingTable BouncingBall Chain2 Chain3 Chain8 Chain16 ChaplyginSleigh
                 CompassWalker ConstantSpeed DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses Mathieu
-                PointBilliard RimlessWheelTen RollingBallEuler RollingBallWall
-                SmoothAndRoughPlane SpasmodicHamiltonian SphereInPlane SuperElasticStrip TwoWheelsArrested
+                MovingWallDisk PointBilliard RefractedParticle RimlessWheelTen RollingBallEuler RollingBallWall
+                SmoothAndRoughPlane SpasmodicHamiltonian SphereInPlane SpringMassWalker SuperElasticStrip TwoWheelsArrested
                 TwoWheelsRod WalkerFootSlip
             });
             models.extend(compiled! {
                 systems:
-                TableWall MagneticDisk IntegrableBead Rheonomic FallingDisk MixedDisk NonholonomicParticle HelicalCircle CurvedDual
+                DampedSleigh OnePole WalkerWithMultiplier TableWall MagneticDisk IntegrableBead Rheonomic FallingDisk MixedDisk NonholonomicParticle HelicalCircle CurvedDual
                 RouthSphere
             });
         }

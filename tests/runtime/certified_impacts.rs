@@ -9,6 +9,7 @@ use std::time::Instant;
 use dalembert::Described;
 use dalembert::certified::CertifiedRun;
 use dalembert::extended::{At, Extended, ExtendedSimulation, Impact};
+#[cfg(feature = "every_model")]
 use dalembert::math::larger;
 use dalembert::numbers::{Interval, Numbers, Row};
 use dalembert::{Impacting, Scene, StateVector, Variational};
@@ -79,6 +80,7 @@ dalembert::model! {
 /// The point on a spring, loaded from its text.
 static SWING: Text = Text::new(Swing::DESCRIPTION.source.value());
 
+#[cfg(feature = "every_model")]
 dalembert::model! {
     /// Point mass that walks on spring legs (H. Geyer, A. Seyfarth and R. Blickhan 2006).
     pub SpringWalker {
@@ -362,6 +364,7 @@ fn a_rolling_disk_is_held_over_twenty_impacts() {
     assert!(along(run, &disk_on_an_ellipse(), "disk") < 1e-4);
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn a_disk_lies_beside_a_run_of_48_digits() {
     let disk = RollingDisk::default();
@@ -397,6 +400,7 @@ fn a_walker_is_held_over_twelve_steps() {
     assert!(along(run, &walker_transient(), "walker") < 1e-11);
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn a_walker_on_springs_is_held_over_six_steps() {
     let walker = SpringWalker::default();
@@ -424,6 +428,7 @@ fn a_wall_that_moves_is_met_in_its_enclosure() {
     );
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn every_motion_from_a_box_is_held_across_impacts() {
     const RADIUS: f64 = 1e-9;

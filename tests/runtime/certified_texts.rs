@@ -27,6 +27,7 @@ mod pendulum {
     dalembert::model_file!("../models/src/double_pendulum.dal");
 }
 
+#[cfg(feature = "every_model")]
 mod sleigh {
     dalembert::model_file!("../models/src/chaplygin_sleigh.dal");
 }
@@ -137,6 +138,7 @@ fn a_circular_billiard_has_the_same_enclosures() {
     assert_same(&table, &[("ta", 1.0)], 1e-9, (50.0, 3));
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn a_sleigh_has_the_same_enclosures() {
     assert_same(&sleigh::ChaplyginSleigh::default(), &[], 0.0, (40.0, 2));

@@ -5,6 +5,7 @@ use dalembert_expr::{
     RealPoint, SymbolId,
 };
 
+use super::admissible::{is_admissible, is_completed};
 use super::dynamics::{Dynamics, Number};
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::locus::Locus;
@@ -317,14 +318,13 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         if search == Search::Value || !sample.is_allowed(model) {
             continue;
         }
-        let mut place = Place::new(model, &sample, point);
         let sum: f64 = terms.iter().sum();
         let size = if is_regular(sum) { sum.abs() } else { 0.0 };
         let found = if size > VISIBLE_DIGITS * scale {
             // The doubles have enough digits for a message.
-            place.difference(question).map(|_| (terms.clone(), sum))
+            difference(model, question, &sample, &point).map(|_| (terms.clone(), sum))
         } else if attempt < ENCLOSED || size > VISIBLE * scale {
-            place.difference(question)
+            difference(model, question, &sample, &point)
         } else {
             None
         };
@@ -333,7 +333,7 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
             seen.witness = Some((sample, values));
             return seen;
         }
-        seen.is_suspect |= size > SUSPECT * scale && is_defined(model, &mut place.point);
+        seen.is_suspect |= size > SUSPECT * scale && is_admissible(model, &sample);
     }
     seen
 }
@@ -343,50 +343,21 @@ fn is_state(model: &Model, question: &impl Vanishing, point: &RealPoint) -> bool
     question.enclosed(model, point).is_some()
 }
 
-/// A real state.
-struct Place<'p> {
-    model: &'p Model,
-    point: RealPoint,
-    /// Symbols that the question does not use, with values. The Lagrangian may depend on them.
-    others: Vec<(SymbolId, f64)>,
-}
-
-impl<'p> Place<'p> {
-    fn new(model: &'p Model, sample: &Sample, mut point: RealPoint) -> Self {
-        let others = sample::sample(model, 0, |symbol| sample.value(symbol).is_none());
-        let others = others.point_values();
-        for (symbol, value) in &others {
-            point.set(*symbol, *value);
-        }
-        Self {
-            model,
-            point,
-            others,
-        }
-    }
-
-    /// The terms of a sum and the sum at the state, if an enclosure proves that the sum is not 0.
-    fn difference(&self, question: &impl Vanishing) -> Option<(Vec<f64>, f64)> {
-        let mut state = question.enclosed(self.model, &self.point)?;
-        let field = state.field();
-        let terms = question.terms(self.model, &mut state.clone())?;
-        let add = |sum, term: &Ball| field.add(sum, *term);
-        let sum = terms.iter().fold(field.integer(0), add);
-        sum.sign()?;
-        // An exact default value lies within rounding of its double.
-        for (symbol, value) in &self.others {
-            let range = state.symbol(&self.model.pool, *symbol);
-            state.set_symbol(*symbol, range.widened(f64::EPSILON * value.abs()));
-        }
-        let shown = terms.iter().map(|term| term.nearest()).collect();
-        is_defined(self.model, &mut state).then(|| (shown, sum.nearest()))
-    }
-}
-
-/// True if the Lagrangian has a value: without one there is no motion.
-fn is_defined<P: ExpansionPoint>(model: &Model, point: &mut P) -> bool {
-    let order = model.pool.reachable(&[model.lagrangian.whole]);
-    point.values(&model.pool, &order).is_some()
+/// The terms of a sum and the sum at a real state, if an enclosure proves that the sum is not 0.
+fn difference(
+    model: &Model,
+    question: &impl Vanishing,
+    sample: &Sample,
+    point: &RealPoint,
+) -> Option<(Vec<f64>, f64)> {
+    let mut state = question.enclosed(model, point)?;
+    let field = state.field();
+    let terms = question.terms(model, &mut state.clone())?;
+    let add = |sum, term: &Ball| field.add(sum, *term);
+    let sum = terms.iter().fold(field.integer(0), add);
+    sum.sign()?;
+    let shown = terms.iter().map(|term| term.nearest()).collect();
+    is_completed(model, sample, &mut state).then(|| (shown, sum.nearest()))
 }
 
 /// True if the argument of a function depends on one of the symbols.

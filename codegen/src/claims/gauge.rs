@@ -43,6 +43,52 @@ pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId
     conditions
 }
 
+/// Expressions, each with its name, that vanish at all states that satisfy the position equations if `rate` is a total
+/// derivative along these states. With the parts of `rate` of degree 0 and 1 in the velocities, `R0 + R1_i qdot^i`:
+///
+/// ```text
+/// rate - R0 - R1_i qdot^i = 0
+/// (dR1_i/dt - dR0/dq^i) qdot^i = 0
+/// ```
+///
+/// None if an equation depends on time: the velocities of a motion are no linear space.
+pub(super) fn conditions_along_equations(
+    model: &mut Model,
+    rate: ExprId,
+) -> Vec<(&'static str, ExprId)> {
+    let mut levels = model.constraints.iter().filter_map(|it| it.level);
+    if levels.any(|level| model.pool.depends_on(level, model.time)) {
+        return Vec::new();
+    }
+    let pool = &mut model.pool;
+    let zero = pool.zero();
+    let symbols = model.coordinates.iter().map(|it| (it.q, it.qdot));
+    let symbols: Vec<(SymbolId, SymbolId)> = symbols.collect();
+    let at_rest: Vec<(SymbolId, ExprId)> = symbols.iter().map(|(_, qdot)| (*qdot, zero)).collect();
+    let constant = pool.substitute(rate, &at_rest);
+    let (mut affine, mut curl) = (vec![constant], Vec::new());
+    for (q, qdot) in symbols {
+        let velocity = pool.variable(qdot);
+        let slope = pool.diff(rate, qdot);
+        let slope = pool.substitute(slope, &at_rest);
+        affine.push(pool.mul(slope, velocity));
+        let (of_time, of_position) = (pool.diff(slope, model.time), pool.diff(constant, q));
+        let difference = pool.sub(of_time, of_position);
+        curl.push(pool.mul(difference, velocity));
+    }
+    let affine = pool.sum(&affine);
+    vec![
+        (
+            "part of this rate that is not linear in the velocities",
+            pool.sub(rate, affine),
+        ),
+        (
+            "Euler-Lagrange expression of this rate along the velocity",
+            pool.sum(&curl),
+        ),
+    ]
+}
+
 /// The function of positions and time with this total derivative, if it is a polynomial.
 pub(super) fn antiderivative(model: &mut Model, rate: ExprId) -> Option<ExprId> {
     let mut variables = vec![model.time];

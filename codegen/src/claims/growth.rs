@@ -12,6 +12,7 @@ use dalembert_expr::{
     Interval, JetSpace, Jets, RangePoint, Reals, Series,
 };
 
+use super::admissible::is_admissible;
 use super::contraction::real_step;
 use super::exactness::{Local, decide_local_in};
 use super::frame::{choose_dependent, frame};
@@ -120,6 +121,9 @@ impl<'l> Loop<'l> {
             if let Some((_, given)) = ranges.iter().find(|(name, _)| name == symbol) {
                 *range = *given;
             }
+        }
+        if !is_admissible(self.model, sample) {
+            return Err(Uncertain::Leaves);
         }
         self.certify(sample, &domain, growth)?;
         match growth.abs() < CANCELLED * size {

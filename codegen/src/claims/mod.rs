@@ -30,6 +30,7 @@
 //! Decisions are taken modulo 61-bit primes at random points. A search in double precision finds points that may prove
 //! a statement. Such a point counts only if an enclosure confirms it.
 
+mod admissible;
 mod alternatives;
 mod ansatz;
 mod barriers;

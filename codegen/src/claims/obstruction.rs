@@ -7,6 +7,7 @@ use dalembert_expr::{
     SymbolId,
 };
 
+use super::admissible::is_admissible;
 use super::closure::{Hull, Origin, bracket};
 use super::dynamics::Number;
 use super::exactness::Local;
@@ -69,7 +70,9 @@ pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Opti
             continue;
         };
         match (
-            found.is_certain && found.sample.is_allowed(model),
+            found.is_certain
+                && found.sample.is_allowed(model)
+                && is_admissible(model, &found.sample),
             has_branches,
         ) {
             (true, false) => return Some(found),

@@ -54,8 +54,20 @@ pub(crate) fn check_symmetry(
         on_d: (are_positions && !model.constraints.is_empty()).then_some(dynamics),
         ..kept(model, field)
     };
-    let rate = kept.rate;
+    let (rate, on_d) = (kept.rate, kept.on_d);
     let is_kept = evidence(model, &kept, seed).shows_that_it_vanishes();
+    if let (false, Some(dynamics)) = (is_kept, on_d) {
+        for (name, value) in gauge::conditions_along_equations(model, rate) {
+            let change = Change {
+                on_d: Some(dynamics),
+                ..Change::of_lagrangian(name.to_owned(), value)
+            };
+            let refuted = evidence(model, &change, seed).verdict(true, change.wording(), seed);
+            if let Verdict::Refuted(_) = refuted {
+                return (refuted, Vec::new());
+            }
+        }
+    }
     let mut changes = match is_kept {
         true => vec![kept],
         false => gauge::conditions(model, rate)

@@ -4,7 +4,7 @@
 //! constraints. Its effect on the state is the same for every multiple of `dh`. For a wall at rest, only the direction
 //! of `dh` matters: its *ray*, without factors that are never zero.
 
-use dalembert_expr::{ExprId, Node, Pool, Singularity};
+use dalembert_expr::{ExprId, Node, Pool, Rational, Singularity};
 
 use super::common_factor::{factored, without_regular_factor};
 use super::constraint::derive_residual;
@@ -53,18 +53,32 @@ pub struct SurfaceForm {
     pub ray_on_d: Option<Vec<ExprId>>,
 }
 
-/// Arguments of the absolute values in a gap, in order of their expressions. Where one of them changes sign, the gap has
-/// a kink.
+/// Arguments of the absolute values in a gap, and bases of squares below a root, in order of their expressions. Where one
+/// of them changes sign, the gap has a kink.
 pub fn kinks(pool: &Pool, gap: ExprId) -> Vec<ExprId> {
     let parts = pool.reachable(&[gap]).into_iter();
     parts
-        .filter_map(|id| match pool.node(id) {
+        .flat_map(|id| match pool.node(id) {
             Node::Call(function, argument) if function.singularity() == Singularity::Kink => {
-                Some(*argument)
+                vec![*argument]
             }
-            _ => None,
+            Node::Product(factors) => {
+                let roots = factors.iter().filter(|(_, power)| !power.is_integer());
+                roots.flat_map(|(base, _)| squared(pool, *base)).collect()
+            }
+            _ => Vec::new(),
         })
         .collect()
+}
+
+/// The bases of even powers among the factors of a product.
+fn squared(pool: &Pool, product: ExprId) -> Vec<ExprId> {
+    let Node::Product(factors) = pool.node(product) else {
+        return Vec::new();
+    };
+    let is_even = |power: &Rational| (power * &Rational::HALF).is_integer();
+    let even = factors.iter().filter(|(_, power)| is_even(power));
+    even.map(|(base, _)| *base).collect()
 }
 
 /// Differentiates every surface.

@@ -20,13 +20,23 @@ pub(crate) struct Onset {
 /// evaluates it at a fraction. `is_out` is true for a stretch on which it certainly holds nowhere.
 pub(crate) fn onset(
     reach: f64,
+    is_out: impl FnMut([f64; 2]) -> bool,
+    holds: impl FnMut(f64) -> bool,
+) -> Option<Onset> {
+    onset_among(STRETCHES, reach, is_out, holds)
+}
+
+/// Same as [`onset`], with a maximum number of stretches examined at each depth.
+pub(crate) fn onset_among(
+    stretches: u32,
+    reach: f64,
     mut is_out: impl FnMut([f64; 2]) -> bool,
     mut holds: impl FnMut(f64) -> bool,
 ) -> Option<Onset> {
     let mut from = 0.0;
     for depth in DEPTHS {
         let begins = |ends: [f64; 2]| holds(ends[1]).then(|| narrowed(ends, &mut holds));
-        match walk([from, reach], [depth, STRETCHES], &mut is_out, begins) {
+        match walk([from, reach], [depth, stretches], &mut is_out, begins) {
             Walk::Found(onset) => return Some(onset),
             Walk::Passed => return None,
             Walk::Stopped(at) => from = at,

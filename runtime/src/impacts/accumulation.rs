@@ -68,7 +68,8 @@ impl<G: StateVector> Accumulation<G> {
         self.coincident.add(bounce);
         let flight = self.hops[surface].land(bounce);
         if let Some(Flight { before, length, .. }) = flight
-            && let Some(end) = self.growth.add(surface, t, before, length, energy)
+            && let Some(end) =
+                (self.growth).add(surface, t, (before, length), bounce.rates[1], energy)
         {
             return Some(Ends::Spasmodic(end));
         }

@@ -41,11 +41,14 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
         glance: &Glance<Sys::Gaps>,
     ) -> Result<Departure, Outcome> {
+        let change = self.first_change(surface, step);
+        if let Change::Rises(part) = change {
+            return Ok(Departure::Rises(part));
+        }
         if self.is_pressed(surface, step, glance) {
             return pressed(surface, step);
         }
-        match self.first_change(surface, step) {
-            Change::Rises(part) => Ok(Departure::Rises(part)),
+        match change {
             Change::Sinks(part) if self.sinks(surface, part, step, glance)? => {
                 pressed(surface, step)
             }
@@ -143,6 +146,8 @@ impl<Sys: Impacting> Watch<Sys> {
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Change {
+        // A touched gap differs from 0 at the start by the error of the motion so far.
+        let start = step.system.gaps(step.t_start(), step.start()).as_slice()[surface];
         let mut change = Change::None;
         let mut octave = LEAST_DEPARTURE;
         while change == Change::None && octave < 1.0 {
@@ -151,11 +156,11 @@ impl<Sys: Impacting> Watch<Sys> {
                 let gap = gaps.as_slice()[surface];
                 step.counters.event_evaluations += 1;
                 let rounding = self.rounding_at(surface, part, step);
-                if gap < -2.0 * rounding {
+                if gap < start.min(0.0) - 2.0 * rounding {
                     change = Change::Sinks(part);
                     break;
                 }
-                if gap > FLAT * rounding {
+                if gap > start.max(0.0) + FLAT * rounding {
                     change = Change::Rises(part);
                     break;
                 }

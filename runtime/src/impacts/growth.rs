@@ -26,6 +26,10 @@ const SHRUNK: f64 = 1.0 / 1024.0;
 /// Number of flights that must have shrunk in a row before the first is kept.
 const FIRST: u64 = 3;
 
+/// Ratio of the last gap rate to the first below which a motion comes to rest on the surface, whatever energy it gains
+/// along it. The rates of hops shrink as their flights do.
+const SLOWED: f64 = 1.0 / 32.0;
+
 /// Least relative growth of the energy.
 const GROWN: f64 = 1.0 / (1 << 20) as f64;
 
@@ -38,8 +42,8 @@ pub(super) struct Growth<G: StateVector>(PerSurface<Series, G>);
 struct Series {
     /// Number of the last flight.
     count: u64,
-    /// The flight of number [`FIRST`], with the energy after it if there is one.
-    first: Option<(Flight, Option<f64>)>,
+    /// The flight of number [`FIRST`], with the gap rate and, if there is one, the energy after it.
+    first: Option<(Flight, f64, Option<f64>)>,
     /// The last two flights whose numbers are powers of two, the later one first.
     marks: [Option<Flight>; 2],
 }
@@ -62,18 +66,18 @@ impl<G: StateVector> Growth<G> {
         self.0[surface] = Series::ENDLESS;
     }
 
-    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `energy` the
-    /// energy of the motion or a substitute. Returns the time of accumulation if flights have become too short to be
+    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `rate` the gap
+    /// rate after the impact, `energy` the energy of the motion or a substitute. Returns the time of accumulation if flights have become too short to be
     /// resolved while the energy grew.
     pub(super) fn add(
         &mut self,
         surface: usize,
         t: f64,
-        before: Option<f64>,
-        length: f64,
+        (before, length): (Option<f64>, f64),
+        rate: f64,
         energy: impl FnOnce() -> Option<f64>,
     ) -> Option<f64> {
-        self.0[surface].add(t, before, length, energy)
+        self.0[surface].add(t, (before, length), rate, energy)
     }
 }
 
@@ -95,8 +99,8 @@ impl Series {
     fn add(
         &mut self,
         t: f64,
-        before: Option<f64>,
-        length: f64,
+        (before, length): (Option<f64>, f64),
+        rate: f64,
         energy: impl FnOnce() -> Option<f64>,
     ) -> Option<f64> {
         // Times are rounded, so that flights may seem to grow.
@@ -107,12 +111,12 @@ impl Series {
         }
         let last = self.count(length);
         if last.number == FIRST {
-            self.first = Some((last, energy()));
+            self.first = Some((last, rate, energy()));
             return None;
         }
-        let ((first, first_energy), before) = self.first.zip(before)?;
+        let ((first, first_rate, first_energy), before) = self.first.zip(before)?;
         let resolved = RESOLVED[usize::from(length < QUICK * before)] * t.abs();
-        if length <= resolved && length < SHRUNK * first.length {
+        if length <= resolved && length < SHRUNK * first.length && rate > SLOWED * first_rate {
             let has_grown = has_grown(first_energy, energy());
             return has_grown.then(|| t + self.rest(first, before, last));
         }
@@ -187,7 +191,7 @@ mod tests {
         for n in 1..20_000_000 {
             let flight = length(n);
             t += flight;
-            let found = growth.add(0, t, before, flight, || Some(f64::from(n)));
+            let found = growth.add(0, t, (before, flight), 1.0, || Some(f64::from(n)));
             if found.is_some() {
                 return found;
             }
@@ -217,8 +221,8 @@ mod tests {
         };
         let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         for n in 1..2000 {
-            let before = Some(cusp(n - 1));
-            assert_eq!(growth.add(0, 1e9, before, cusp(n), || Some(1.0)), None);
+            let flights = (Some(cusp(n - 1)), cusp(n));
+            assert_eq!(growth.add(0, 1e9, flights, 1.0, || Some(1.0)), None);
         }
     }
 }

@@ -16,6 +16,7 @@
 //! constraints ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
+use super::resting::squared_rate;
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
@@ -24,6 +25,10 @@ use crate::forces::Forces;
 use crate::per_surface::PerSurface;
 use crate::state::{StateVector, scaled};
 
+/// Square of a gap rate, relative to that of a motion straight to the surface, up to which it may be an error.
+const ERRORS: f64 = 1.0 / (1 << 16) as f64;
+/// Relative change of positions that leaves a kink.
+const STEP_ASIDE: f64 = 4.0 * f64::EPSILON;
 /// Size of a residual that counts as rounding, relative to the right-hand side.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
@@ -98,9 +103,37 @@ impl<G: StateVector> Held<G> {
         if let Some(slide) = self.slide {
             return slide.pressures(system, t, state).map(Some);
         }
+        let state = &self.beside_kink(system, t, state)?;
         let mut rate = system.zero_state();
         system.rate(t, state, &mut rate)?;
         self.sizes_at(system, t, state, &rate)
+    }
+
+    /// The state, or one within rounding in the direction of the motion if the gap of a held surface has a kink there,
+    /// where it has no slope.
+    fn beside_kink<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Sys::State, Fault> {
+        let mut kinked = self.iter().filter(|&surface| system.has_kinks(surface));
+        let Some(first) = kinked.next() else {
+            return Ok(*state);
+        };
+        let rates = system.gap_rates(t, state)?;
+        if [first]
+            .into_iter()
+            .chain(kinked)
+            .all(|surface| rates.as_slice()[surface].is_finite())
+        {
+            return Ok(*state);
+        }
+        let (mut q, qdot) = (system.position(state), system.velocity(t, state)?);
+        for (q, v) in q.as_mut_slice().iter_mut().zip(qdot.as_slice()) {
+            *q += (STEP_ASIDE * q.abs().max(f64::MIN_POSITIVE / f64::EPSILON)).copysign(*v);
+        }
+        system.state_nearest(t, &q, &qdot)
     }
 
     /// Same as [`Held::sizes`], for a known rate without the forces.
@@ -311,9 +344,35 @@ impl<G: StateVector> Held<G> {
                 *now.state = focused;
             }
         }
-        let state = *now.state;
-        let rates = system.gap_rates(t, &state)?;
-        match self.against(system, t, &state, &rates)? {
+        let rates = system.gap_rates(t, now.state)?;
+        self.cancel(&rates, now)
+    }
+
+    /// True if gap rates of the held surfaces are so small that they may be errors of the motion.
+    pub(super) fn are_errors<Sys: Impacting<Gaps = G>>(
+        &self,
+        rates: &G,
+        now: &Moment<'_, Sys>,
+    ) -> Result<bool, Fault> {
+        for surface in self.iter() {
+            let rate = rates.as_slice()[surface];
+            let whole = squared_rate(now.system, surface, (now.t, now.state))?;
+            let is_small = rate * rate <= ERRORS * whole;
+            if !is_small {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Takes gap rates of held surfaces from those of the state.
+    pub(super) fn cancel<Sys: Impacting<Gaps = G>>(
+        &self,
+        rates: &G,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Fault> {
+        let (system, t, state) = (now.system, now.t, *now.state);
+        match self.against(system, t, &state, rates)? {
             Some(sizes) => self.push(system, t, &state, &sizes, now.state),
             None => Ok(()),
         }
@@ -331,6 +390,7 @@ impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
         if let Some(slide) = self.slide {
             return slide.add(system, t, state, rate);
         }
+        let state = &self.beside_kink(system, t, state)?;
         let Some(sizes) = self.sizes_at(system, t, state, rate)? else {
             return Ok(());
         };

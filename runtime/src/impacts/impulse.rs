@@ -7,7 +7,7 @@ use super::corner::Recurrence;
 use super::held::Held;
 use super::hits::Hits;
 use super::instantaneous::focused;
-use super::resting::Resting;
+use super::resting::{Resting, is_at_rest};
 use super::sliding::Slide;
 use super::watch::Watch;
 use crate::audit::{Audit, Auditor};
@@ -462,6 +462,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         let surface = strike.surface;
         rate_after < -strike.still
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
+            && !is_at_rest(now.system, surface, rate_after, (now.t, now.state)).unwrap_or(false)
     }
 
     /// Records an impact in the accumulation. Returns the gap rates and the next action.
@@ -574,9 +575,21 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             Ok(hit) => {
                 let end = self.watch.end_of_hold(hit.unwrap_or(1.0), step)?;
                 let first = self.resting.look(hit, end, step)?;
-                let kink = self.watch.kink_of_hold(first.unwrap_or(1.0), step)?;
-                match kink.filter(|kink| first.is_none_or(|first| *kink < first)) {
-                    Some(kink) => Ok(Some(self.resting.pass_kink(kink))),
+                let kink = self.watch.kink_of_hold(1.0, step)?;
+                // At a kink the force jumps, perhaps through 0: the kink comes first.
+                let is_first = |kink: &f64| match (first, end) {
+                    (None, _) => true,
+                    // Behind the kink the surface does not count.
+                    (Some(first), Some((part, _))) if part == first => {
+                        *kink < first && !self.watch.is_at_kink(first, step)
+                    }
+                    (Some(first), _) => *kink < first || self.watch.is_at_kink(first, step),
+                };
+                match kink.filter(is_first) {
+                    Some(kink) => {
+                        let rates = self.watch.rates_before_kink(kink, step)?;
+                        Ok(Some(self.resting.pass_kink(kink, rates)))
+                    }
                     None => Ok(first),
                 }
             }
@@ -592,10 +605,14 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     fn settle(&mut self, now: &mut Moment<'_, Sys>, _: bool) -> Result<Change, Outcome> {
         match self.resting.forces() {
             // A gap rate that is not 0 may be that of the other side of a kink.
-            Some(_) if self.resting.is_behind_kink() || self.watch.is_at_kink(now) => {
+            Some(_) if self.resting.is_behind_kink() || self.watch.rests_at_kink(now) => {
+                self.resting.stay_at_kink(now.t)?;
                 Ok(Change::Kept)
             }
-            Some(held) => Ok(held.settle(now)?),
+            Some(held) => {
+                self.resting.leave_kinks();
+                Ok(held.settle(now)?)
+            }
             None => Ok(Change::Kept),
         }
     }
@@ -608,11 +625,17 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     ) -> Result<(), Outcome> {
         self.watch.check_behind(theta, now)?;
         let held = *self.resting.held();
-        self.resting.count_kink(now.t)?;
+        self.resting.arrive_at_kink(now)?;
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;
             self.watch.hold(self.resting.held());
-            let at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()), &rates);
+            let mut at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()), &rates);
+            if theta == 0.0 {
+                // Holding a surface moves the positions, by errors of the motion so far.
+                self.watch
+                    .touched()
+                    .for_each(|surface| at_hand.add(surface));
+            }
             return self.watch.leave(&at_hand, now, rates);
         }
         let mut hits = self.watch.hits(theta, now)?;

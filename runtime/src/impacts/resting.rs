@@ -13,6 +13,7 @@ use super::repeats::Repeats;
 use super::sliding::Slide;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
+use crate::error::Fault;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
@@ -28,7 +29,10 @@ const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
 /// Number of kinks in succession, and their distance in time relative to the time, at which the motion counts as held in
 /// a crease: it would move to and fro across it without end.
-const CREASE: (u32, f64) = (8, 1.0 / (1 << 30) as f64);
+const CREASE: (u32, f64) = (8, 1.0 / (1 << 22) as f64);
+
+/// Number of steps that end at a kink, and their time relative to the time, after which the motion counts as held there.
+const STAY: (u32, f64) = (8, 1.0 / (1 << 16) as f64);
 
 /// Reason for a cut of the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +57,10 @@ pub(super) struct Resting<G: StateVector> {
     changes: Repeats,
     /// Time of the last kink that was passed, and the number of kinks in close succession before it.
     kinks: (f64, u32),
+    /// Beginning of the present stay at a kink, and the number of its steps.
+    stay: Option<(f64, u32)>,
+    /// The gap rates before the last kink, until they are taken from those behind it.
+    rates: Option<G>,
 }
 
 impl<G: StateVector> Resting<G> {
@@ -64,6 +72,8 @@ impl<G: StateVector> Resting<G> {
             accumulated: PerSurface::all(like, None),
             changes: Repeats::none(),
             kinks: (f64::NEG_INFINITY, 0),
+            stay: None,
+            rates: None,
         }
     }
 
@@ -126,18 +136,23 @@ impl<G: StateVector> Resting<G> {
     }
 
     /// Cuts the step at `part`, where the gap of a held surface has passed a kink: its rate may have jumped, so that the
-    /// surface acts anew. A change found later in the step is withdrawn.
-    pub(super) fn pass_kink(&mut self, part: f64) -> f64 {
+    /// surface acts anew. A change found later in the step is withdrawn. `rates` are the gap rates before the kink.
+    pub(super) fn pass_kink(&mut self, part: f64, rates: Option<G>) -> f64 {
         self.turn = Turn::Kink;
+        self.rates = rates;
         part
     }
 
-    /// Counts a kink behind which the step was cut. Ends the run in a crease, where no direction is that of the force.
-    pub(super) fn count_kink(&mut self, t: f64) -> Result<(), Outcome> {
+    /// Counts a kink behind which the step was cut, and takes errors of the motion before it from the gap rates, so that
+    /// what is left of these is the jump at the kink. Ends the run in a crease, where no direction is that of the force.
+    pub(super) fn arrive_at_kink<Sys: Impacting<Gaps = G>>(
+        &mut self,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
         if !self.is_behind_kink() {
             return Ok(());
         }
-        let (last, count) = self.kinks;
+        let ((last, count), t) = (self.kinks, now.t);
         let (most, close) = CREASE;
         let count = if t - last <= close * t.abs() {
             count + 1
@@ -145,10 +160,35 @@ impl<G: StateVector> Resting<G> {
             0
         };
         self.kinks = (t, count);
+        if let Some(surface) = self.held.iter().next()
+            && count > most
+        {
+            return Err(Outcome::Zeno { t, surface });
+        }
+        if let Some(rates) = self.rates.take()
+            && self.held.are_errors(&rates, now)?
+        {
+            self.held.cancel(&rates, now)?;
+        }
+        Ok(())
+    }
+
+    /// Counts a step at whose end the motion is still at a kink, within rounding errors. Ends the run if it stays there.
+    pub(super) fn stay_at_kink(&mut self, t: f64) -> Result<(), Outcome> {
+        let (since, count) = self.stay.unwrap_or((t, 0));
+        self.stay = Some((since, count + 1));
+        let (most, close) = STAY;
         match self.held.iter().next() {
-            Some(surface) if count > most => Err(Outcome::Zeno { t, surface }),
+            Some(surface) if count > most && t - since > close * t.abs() => {
+                Err(Outcome::Zeno { t, surface })
+            }
             _ => Ok(()),
         }
+    }
+
+    /// Records a step that ends at no kink.
+    pub(super) fn leave_kinks(&mut self) {
+        self.stay = None;
     }
 
     /// True if the step was cut behind a kink.
@@ -210,19 +250,13 @@ impl<G: StateVector> Resting<G> {
         }
         let (system, t) = (now.system, now.t);
         let rates = system.gap_rates(t, now.state)?;
-        let (qdot, p) = (
-            system.velocity(t, now.state)?,
-            system.momentum(t, now.state)?,
-        );
-        let pairs = qdot.as_slice().iter().zip(p.as_slice());
-        let energy: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
         for surface in 0..self.accumulated.count() {
             let rate = rates.as_slice()[surface];
-            if self.held.is_held(surface) && rate > 0.0 {
-                let contact = system.contact(surface, t, now.state)?;
-                if rate * rate > STILL * energy * contact.constrained_compliance {
-                    self.leave(surface, now, observer)?;
-                }
+            if self.held.is_held(surface)
+                && rate > 0.0
+                && !is_at_rest(system, surface, rate, (t, now.state))?
+            {
+                self.leave(surface, now, observer)?;
             }
         }
         self.held.settle_rates(now)?;
@@ -348,6 +382,29 @@ impl<G: StateVector> Resting<G> {
             },
         )
     }
+}
+
+/// True if a gap rate counts as 0, compared with the kinetic energy.
+pub(super) fn is_at_rest<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    rate: f64,
+    at: (f64, &Sys::State),
+) -> Result<bool, Fault> {
+    Ok(rate * rate <= STILL * squared_rate(system, surface, at)?)
+}
+
+/// The square of the gap rate of a motion straight to a surface with the kinetic energy of the state, up to a factor of 2.
+pub(super) fn squared_rate<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    (t, state): (f64, &Sys::State),
+) -> Result<f64, Fault> {
+    let (qdot, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
+    let pairs = qdot.as_slice().iter().zip(p.as_slice());
+    let energy: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
+    let contact = system.contact(surface, t, state)?;
+    Ok(energy * contact.constrained_compliance)
 }
 
 fn show<Sys: Impacting, O: Observer<Sys>>(

@@ -12,7 +12,7 @@ use super::search::is_active;
 use super::watch::{Watch, rounding};
 use crate::contract::{Along, Impacting};
 use crate::effects::{Moment, StepView};
-use crate::events::first::{Onset, narrowed, onset};
+use crate::events::first::{Onset, narrowed, onset, onset_among};
 use crate::events::resolution::is_beyond_rounding;
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
@@ -23,6 +23,15 @@ use crate::state::StateVector;
 const LEAST_STRETCH: f64 = 1e-6;
 /// Bound for the relative rounding error of a component or of the time.
 const UNITS: f64 = 32.0 * f64::EPSILON;
+
+/// Fractions of the motion up to a kink at which the motion may be distinguished from one at the kink.
+const BEFORE_KINK: [f64; 4] = [1.0 - LEAST_STRETCH, 0.999, 0.9, 0.0];
+
+/// Number of stretches in which a kink is sought. A step along a kink has no stretch without one.
+const STRETCHES: u32 = 256;
+
+/// Length of a path, in units of the rounding errors of the positions, below which the kinks at its ends are one.
+const RETURNS: f64 = 32.0;
 
 impl<Sys: Impacting> Watch<Sys> {
     /// Proposes to cut the step where a surface first begins to count while the motion is behind it, if this precedes
@@ -86,7 +95,12 @@ impl<Sys: Impacting> Watch<Sys> {
         self.path.enclose();
         let rounding = self.rounding_at(surface, 1.0, step);
         let drift = SAME_TIME * (self.rates.as_slice()[surface] * step.t_end()).abs();
-        let floor = 2.0 * rounding + drift;
+        // A touched surface that counts at the start was not passed there.
+        let first = match is_active(surface, step, 0.0) {
+            true => gap_at(surface, step, 0.0).min(0.0),
+            false => 0.0,
+        };
+        let floor = (2.0 * rounding + drift).max(-4.0 * first);
         let step = RefCell::new(step);
         let counts = |part: f64| {
             let step = &mut *step.borrow_mut();
@@ -248,19 +262,68 @@ impl<Sys: Impacting> Watch<Sys> {
             let component = |i: usize| about(state.as_slice()[i], 0.0);
             passes((about(time, 0.0), &component), step) == Some(true)
         };
-        onset(1.0, is_smooth, has_passed).map(|found| place(found.after))
+        if self.is_point([from, to], &step.borrow()) {
+            return has_passed(1.0).then_some(to);
+        }
+        onset_among(STRETCHES, 1.0, is_smooth, has_passed).map(|found| place(found.after))
+    }
+
+    /// True if the motion stays within a few rounding errors of one place, so that no enclosure tells where it is.
+    fn is_point<Step: Stepper<Sys>>(
+        &self,
+        [from, to]: [f64; 2],
+        step: &StepView<'_, Sys, Step>,
+    ) -> bool {
+        let (start, end) = (step.state(from), step.state(to));
+        let places = start.as_slice().iter().zip(end.as_slice());
+        let mut sized = places.zip(self.sizes.as_slice());
+        let count = step.system.coordinate_count();
+        let time = (to - from) * step.length();
+        time <= RETURNS * UNITS * step.t_end().abs()
+            || sized
+                .by_ref()
+                .take(count)
+                .all(|((start, end), size)| (end - start).abs() <= RETURNS * UNITS * size.abs())
     }
 
     /// True if the gap of a surface that holds the motion has a kink within rounding of the state.
-    pub(super) fn is_at_kink(&self, now: &Moment<'_, Sys>) -> bool {
-        let (system, t, sizes) = (now.system, now.t, &self.sizes);
-        let state = |units: f64| {
-            move |i: usize| about(now.state.as_slice()[i], units * sizes.as_slice()[i])
+    pub(super) fn rests_at_kink(&self, now: &Moment<'_, Sys>) -> bool {
+        self.has_kink(now.system, (now.t, now.state), 16.0)
+    }
+
+    /// Same as [`Watch::rests_at_kink`] for the state at a fraction of a step.
+    pub(super) fn is_at_kink<Step: Stepper<Sys>>(
+        &self,
+        part: f64,
+        step: &StepView<'_, Sys, Step>,
+    ) -> bool {
+        self.has_kink(step.system, (step.time(part), &step.state(part)), 16.0)
+    }
+
+    /// The gap rates shortly before a kink at a fraction of the step. Those of held surfaces are errors of the motion so
+    /// far, since the surfaces keep them at 0. `None` if the kink is within rounding of the whole motion before it.
+    pub(super) fn rates_before_kink<Step: Stepper<Sys>>(
+        &self,
+        kink: f64,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Result<Option<Sys::Gaps>, Outcome> {
+        let mut places = BEFORE_KINK.iter().map(|share| kink * share);
+        let Some(part) = places.find(|part| !self.is_at_kink(*part, step)) else {
+            return Ok(None);
         };
-        let (exact, rounded, widened) = (state(0.0), state(1.0), state(4.0));
+        let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
+        Ok(Some(rates))
+    }
+
+    /// True if the gap of a surface that holds the motion has a kink within this many rounding errors of a state.
+    fn has_kink(&self, system: &Sys, (t, place): (f64, &Sys::State), units: f64) -> bool {
+        let sizes = &self.sizes;
+        let state =
+            |units: f64| move |i: usize| about(place.as_slice()[i], units * sizes.as_slice()[i]);
+        let (exact, rounded, widened) = (state(0.0), state(1.0), state(units));
         let is_near = |surface: usize| {
             let start: Along<'_> = (about(t, 0.0), &exact);
-            let around: Along<'_> = (about(t, 4.0 * t), &widened);
+            let around: Along<'_> = (about(t, units * t), &widened);
             let passes = system.passes_kink(surface, start, around, (about(t, t), &rounded));
             passes != Some(false)
         };
@@ -361,7 +424,7 @@ fn begin<Sys: Impacting, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
 ) -> Onset {
     let counts = |part: f64| gap_at(surface, step, part) < 0.0 && is_active(surface, step, part);
-    let mut back = f64::EPSILON * after;
+    let mut back = (f64::EPSILON * after).max(f64::MIN_POSITIVE);
     while back < after && counts(after - back) {
         back *= 4.0;
     }

@@ -169,6 +169,13 @@ impl<Sys: Impacting> Watch<Sys> {
         self.guarded[surface] && !is_in_front && !self.held.is_held(surface)
     }
 
+    /// The surfaces that the motion touches at the start of the step.
+    pub(super) fn touched(&self) -> impl Iterator<Item = usize> + '_ {
+        let gaps = self.gaps.as_slice().iter();
+        gaps.enumerate()
+            .filter_map(|(surface, gap)| (*gap == 0.0).then_some(surface))
+    }
+
     pub(super) fn is_passable(&self, surface: usize) -> bool {
         self.passable[surface]
     }

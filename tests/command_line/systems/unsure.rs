@@ -14,31 +14,53 @@ use dalembert::{
 };
 use dalembert_driver::Model;
 
+/// Value of a parameter for which runs fail.
+const UNLUCKY: f64 = 13.0;
+
 /// A model whose event search samples the gaps.
 #[derive(Debug, Clone)]
-pub struct Unsure<M>(pub M);
+pub struct Unsure<M> {
+    system: M,
+    description: &'static Description,
+    fails: bool,
+}
+
+impl<M> Unsure<M> {
+    pub fn of(system: M, description: &'static Description) -> Self {
+        Self {
+            system,
+            description,
+            fails: false,
+        }
+    }
+
+    fn fail(&self) {
+        assert!(!self.fails, "unlucky");
+    }
+}
 
 impl<M: VectorField> VectorField for Unsure<M> {
     type State = M::State;
 
     fn state_len(&self) -> usize {
-        self.0.state_len()
+        self.system.state_len()
     }
 
     fn rate(&self, t: f64, state: &M::State, rate: &mut M::State) -> Result<(), Fault> {
-        self.0.rate(t, state, rate)
+        self.fail();
+        self.system.rate(t, state, rate)
     }
 
     fn scale(&self, t: f64, state: &M::State) -> M::State {
-        self.0.scale(t, state)
+        self.system.scale(t, state)
     }
 
     fn can_be_narrow(&self) -> bool {
-        self.0.can_be_narrow()
+        self.system.can_be_narrow()
     }
 
     fn has_narrow_rates(&self) -> bool {
-        self.0.has_narrow_rates()
+        self.system.has_narrow_rates()
     }
 
     fn rates_along(
@@ -47,7 +69,7 @@ impl<M: VectorField> VectorField for Unsure<M> {
         component: &dyn Fn(usize) -> Rated,
         rate: &mut dyn FnMut(usize, Rated),
     ) -> Result<(), Fault> {
-        self.0.rates_along(t, component, rate)
+        self.system.rates_along(t, component, rate)
     }
 }
 
@@ -59,19 +81,19 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
     type Jets<L: Numbers> = M::Jets<L>;
 
     fn series_gap_count(&self) -> usize {
-        self.0.series_gap_count()
+        self.system.series_gap_count()
     }
 
     fn firsts_len(&self) -> usize {
-        self.0.firsts_len()
+        self.system.firsts_len()
     }
 
     fn work(&self) -> Option<Work> {
-        self.0.work()
+        self.system.work()
     }
 
     fn parameters(&self) -> M::Parameters<f64> {
-        self.0.parameters()
+        self.system.parameters()
     }
 
     fn begin<L: Numbers>(
@@ -81,7 +103,8 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
         state: &M::Row<L>,
         firsts: &mut M::Firsts<L>,
     ) -> Result<(), Fault> {
-        self.0.begin(parameters, t, state, firsts)
+        self.fail();
+        self.system.begin(parameters, t, state, firsts)
     }
 
     fn advance<L: Numbers>(
@@ -94,7 +117,7 @@ impl<M: TaylorField> TaylorField for Unsure<M> {
         gaps: &mut [M::Gaps<L>; LENGTH],
         jets: &mut M::Jets<L>,
     ) {
-        self.0
+        self.system
             .advance(parameters, unit, order, firsts, coefficients, gaps, jets);
     }
 }
@@ -104,75 +127,75 @@ impl<M: System> System for Unsure<M> {
     type Impulse = M::Impulse;
 
     fn coordinate_count(&self) -> usize {
-        self.0.coordinate_count()
+        self.system.coordinate_count()
     }
 
     fn impulse_len(&self) -> usize {
-        self.0.impulse_len()
+        self.system.impulse_len()
     }
 
     fn position(&self, state: &M::State) -> M::Vector {
-        self.0.position(state)
+        self.system.position(state)
     }
 
     fn velocity(&self, t: f64, state: &M::State) -> Result<M::Vector, Fault> {
-        self.0.velocity(t, state)
+        self.system.velocity(t, state)
     }
 
     fn momentum(&self, t: f64, state: &M::State) -> Result<M::Vector, Fault> {
-        self.0.momentum(t, state)
+        self.system.momentum(t, state)
     }
 
     fn state_unchecked(&self, t: f64, q: &M::Vector, qdot: &M::Vector) -> Result<M::State, Fault> {
-        self.0.state_unchecked(t, q, qdot)
+        self.system.state_unchecked(t, q, qdot)
     }
 
     fn state_from_momenta(&self, t: f64, q: &M::Vector, p: &M::Vector) -> Result<M::State, Fault> {
-        self.0.state_from_momenta(t, q, p)
+        self.system.state_from_momenta(t, q, p)
     }
 
     fn energy(&self, t: f64, state: &M::State) -> Result<f64, Fault> {
-        self.0.energy(t, state)
+        self.system.energy(t, state)
     }
 
     fn conserves_energy(&self) -> bool {
-        self.0.conserves_energy()
+        self.system.conserves_energy()
     }
 
     fn kick(&self, state: &mut M::State, size: f64, direction: &M::Impulse) {
-        self.0.kick(state, size, direction);
+        self.system.kick(state, size, direction);
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
-        self.0.check_parameters()
+        self.system.check_parameters()
     }
 
     fn motion_start(&self, state: &M::State) -> usize {
-        self.0.motion_start(state)
+        self.system.motion_start(state)
     }
 
     fn mode(&self, state: &M::State) -> usize {
-        self.0.mode(state)
+        self.system.mode(state)
     }
 
     fn outside_chart(&self, state: &M::State) -> Option<usize> {
-        self.0.outside_chart(state)
+        self.system.outside_chart(state)
     }
 
     fn can_lose_rank(&self) -> bool {
-        self.0.can_lose_rank()
+        self.system.can_lose_rank()
     }
 
     fn rank_drop(&self, motion: impl Fn(f64) -> (f64, M::State), reach: f64) -> Option<RankDrop> {
-        self.0.rank_drop(motion, reach)
+        self.system.rank_drop(motion, reach)
     }
 
     fn admit(&self, t: f64, q: &M::Vector, qdot: &M::Vector) -> Result<(), StateError> {
-        self.0.admit(t, q, qdot)
+        self.system.admit(t, q, qdot)
     }
 
     fn state_nearest(&self, t: f64, q: &M::Vector, qdot: &M::Vector) -> Result<M::State, Fault> {
-        self.0.state_nearest(t, q, qdot)
+        self.system.state_nearest(t, q, qdot)
     }
 
     fn complete_position(
@@ -181,7 +204,7 @@ impl<M: System> System for Unsure<M> {
         q: &M::Vector,
         placed: &M::Vector,
     ) -> Result<M::Vector, StateError> {
-        self.0.complete_position(t, q, placed)
+        self.system.complete_position(t, q, placed)
     }
 
     fn complete_velocity(
@@ -191,7 +214,7 @@ impl<M: System> System for Unsure<M> {
         qdot: &M::Vector,
         named: &M::Vector,
     ) -> Result<M::Vector, StateError> {
-        self.0.complete_velocity(t, q, qdot, named)
+        self.system.complete_velocity(t, q, qdot, named)
     }
 }
 
@@ -199,15 +222,16 @@ impl<M: Lagrangian> Lagrangian for Unsure<M> {
     type Reactions = M::Reactions;
 
     fn reaction_count(&self) -> usize {
-        self.0.reaction_count()
+        self.system.reaction_count()
     }
 
     fn force(&self, t: f64, q: &M::Vector, qdot: &M::Vector) -> M::Vector {
-        self.0.force(t, q, qdot)
+        self.fail();
+        self.system.force(t, q, qdot)
     }
 
     fn reaction_force(&self, t: f64, q: &M::Vector, reactions: &M::Reactions) -> M::Vector {
-        self.0.reaction_force(t, q, reactions)
+        self.system.reaction_force(t, q, reactions)
     }
 
     fn constrained_velocity(
@@ -216,7 +240,7 @@ impl<M: Lagrangian> Lagrangian for Unsure<M> {
         q: &M::Vector,
         p: &M::Vector,
     ) -> Result<(M::Vector, M::Reactions), Fault> {
-        self.0.constrained_velocity(t, q, p)
+        self.system.constrained_velocity(t, q, p)
     }
 }
 
@@ -228,43 +252,50 @@ where
     type Global = Unsure<M::Global>;
 
     fn global(&self) -> Self::Global {
-        Unsure(self.0.global())
+        Unsure {
+            system: self.system.global(),
+            description: self.description,
+            fails: self.fails,
+        }
     }
 
     fn parameter(&self, index: usize) -> f64 {
-        self.0.parameter(index)
+        self.system.parameter(index)
     }
 
     fn set_parameter(&mut self, index: usize, value: f64) {
-        self.0.set_parameter(index, value);
+        self.fails |= value == UNLUCKY;
+        self.system.set_parameter(index, value);
     }
 
     fn set_mode(&mut self, mode: usize) {
-        self.0.set_mode(mode);
+        self.system.set_mode(mode);
     }
 
     fn initial(&self) -> Initial<M::Vector> {
-        self.0.initial()
+        self.system.initial()
     }
 
     fn outputs(&self, t: f64, state: &M::State, values: &mut [f64]) -> Result<(), Fault> {
-        self.0.outputs(t, state, values)
+        self.system.outputs(t, state, values)
     }
 
     fn view_path(&self, t: f64, state: &M::State) -> Option<[f64; 2]> {
-        self.0.view_path(t, state)
+        self.system.view_path(t, state)
     }
 
     fn view_region(&self, t: f64, q: &M::Vector) -> Option<f64> {
-        self.0.view_region(t, q)
+        self.system.view_region(t, q)
     }
 
     fn inspect(&self, t: f64, state: &M::State, report: &mut dyn Report) -> Result<(), Fault> {
-        self.0.inspect(t, state, report)
+        self.system.inspect(t, state, report)?;
+        report.vector("samples", &PLACES);
+        Ok(())
     }
 
     fn description(&self) -> &Description {
-        self.0.description()
+        self.description
     }
 }
 
@@ -299,7 +330,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
         step: &mut StepView<'_, Unsure<M>, Step>,
     ) -> Result<Option<f64>, Outcome> {
         step.prepare()?;
-        let system = &step.system.0;
+        let system = &step.system.system;
         let gap = |surface: usize, part: f64| {
             let (t, state) = (step.time(part), step.state(part));
             system.gaps(t, &state).as_slice()[surface]
@@ -341,7 +372,7 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
         let Some(surface) = self.found.take() else {
             return Ok(());
         };
-        let (system, t, before) = (&now.system.0, now.t, *now.state);
+        let (system, t, before) = (&now.system.system, now.t, *now.state);
         *now.state = match system.law(surface).is_map() {
             true => system.landing(surface, t, &before)?.state,
             false => {
@@ -371,11 +402,11 @@ impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
 
 impl<M: Impacting> SceneEffects<Unsure<M>> for NineSamples {
     fn law(&self, system: &Unsure<M>, surface: usize) -> Option<Law> {
-        (surface < system.0.surface_count()).then(|| system.0.law(surface))
+        (surface < system.system.surface_count()).then(|| system.system.law(surface))
     }
 
     fn audit(&self, system: &Unsure<M>, work: &mut dyn FnMut(&mut dyn Auditor<Unsure<M>>)) -> bool {
-        work(&mut Audit::new(&system.0));
+        work(&mut Audit::new(&system.system));
         true
     }
 }
