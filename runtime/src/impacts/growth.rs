@@ -66,9 +66,9 @@ impl<G: StateVector> Growth<G> {
         self.0[surface] = Series::ENDLESS;
     }
 
-    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `rate` the gap
-    /// rate after the impact, `energy` the energy of the motion or a substitute. Returns the time of accumulation if flights have become too short to be
-    /// resolved while the energy grew.
+    /// Records a flight that ends at `t`, after a flight of length `before` on the same surface. `rate` is the gap rate
+    /// after the impact, `energy` the energy of the motion or a substitute. Returns the time of accumulation if flights
+    /// have become too short to be resolved while the energy grew.
     pub(super) fn add(
         &mut self,
         surface: usize,

@@ -117,16 +117,12 @@ impl<G: StateVector> Held<G> {
         t: f64,
         state: &Sys::State,
     ) -> Result<Sys::State, Fault> {
-        let mut kinked = self.iter().filter(|&surface| system.has_kinks(surface));
-        let Some(first) = kinked.next() else {
+        let kinked = || self.iter().filter(|&surface| system.has_kinks(surface));
+        if kinked().next().is_none() {
             return Ok(*state);
-        };
+        }
         let rates = system.gap_rates(t, state)?;
-        if [first]
-            .into_iter()
-            .chain(kinked)
-            .all(|surface| rates.as_slice()[surface].is_finite())
-        {
+        if kinked().all(|surface| rates.as_slice()[surface].is_finite()) {
             return Ok(*state);
         }
         let (mut q, qdot) = (system.position(state), system.velocity(t, state)?);

@@ -28,7 +28,7 @@ const CHANGES: u32 = 4;
 const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
 /// Number of kinks in succession, and their distance in time relative to the time, at which the motion counts as held in
-/// a crease: it would move to and fro across it without end.
+/// a crease: it would move back and forth across it without end.
 const CREASE: (u32, f64) = (8, 1.0 / (1 << 22) as f64);
 
 /// Number of steps that end at a kink, and their time relative to the time, after which the motion counts as held there.

@@ -24,6 +24,9 @@ const LEAST_STRETCH: f64 = 1e-6;
 /// Bound for the relative rounding error of a component or of the time.
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
+/// Distance from a kink, in units of rounding errors, within which a motion counts as there.
+const NEAR: f64 = 16.0;
+
 /// Fractions of the motion up to a kink at which the motion may be distinguished from one at the kink.
 const BEFORE_KINK: [f64; 4] = [1.0 - LEAST_STRETCH, 0.999, 0.9, 0.0];
 
@@ -274,21 +277,19 @@ impl<Sys: Impacting> Watch<Sys> {
         [from, to]: [f64; 2],
         step: &StepView<'_, Sys, Step>,
     ) -> bool {
+        let is_short = |length: f64, size: f64| length.abs() <= RETURNS * UNITS * size.abs();
         let (start, end) = (step.state(from), step.state(to));
         let places = start.as_slice().iter().zip(end.as_slice());
-        let mut sized = places.zip(self.sizes.as_slice());
-        let count = step.system.coordinate_count();
-        let time = (to - from) * step.length();
-        time <= RETURNS * UNITS * step.t_end().abs()
-            || sized
-                .by_ref()
-                .take(count)
-                .all(|((start, end), size)| (end - start).abs() <= RETURNS * UNITS * size.abs())
+        let mut positions = places
+            .zip(self.sizes.as_slice())
+            .take(step.system.coordinate_count());
+        is_short((to - from) * step.length(), step.t_end())
+            || positions.all(|((start, end), size)| is_short(end - start, *size))
     }
 
     /// True if the gap of a surface that holds the motion has a kink within rounding of the state.
     pub(super) fn rests_at_kink(&self, now: &Moment<'_, Sys>) -> bool {
-        self.has_kink(now.system, (now.t, now.state), 16.0)
+        self.has_kink(now.system, (now.t, now.state))
     }
 
     /// Same as [`Watch::rests_at_kink`] for the state at a fraction of a step.
@@ -297,7 +298,7 @@ impl<Sys: Impacting> Watch<Sys> {
         part: f64,
         step: &StepView<'_, Sys, Step>,
     ) -> bool {
-        self.has_kink(step.system, (step.time(part), &step.state(part)), 16.0)
+        self.has_kink(step.system, (step.time(part), &step.state(part)))
     }
 
     /// The gap rates shortly before a kink at a fraction of the step. Those of held surfaces are errors of the motion so
@@ -315,15 +316,15 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(Some(rates))
     }
 
-    /// True if the gap of a surface that holds the motion has a kink within this many rounding errors of a state.
-    fn has_kink(&self, system: &Sys, (t, place): (f64, &Sys::State), units: f64) -> bool {
+    /// True if the gap of a surface that holds the motion has a kink within [`NEAR`] rounding errors of a state.
+    fn has_kink(&self, system: &Sys, (t, place): (f64, &Sys::State)) -> bool {
         let sizes = &self.sizes;
         let state =
             |units: f64| move |i: usize| about(place.as_slice()[i], units * sizes.as_slice()[i]);
-        let (exact, rounded, widened) = (state(0.0), state(1.0), state(units));
+        let (exact, rounded, widened) = (state(0.0), state(1.0), state(NEAR));
         let is_near = |surface: usize| {
             let start: Along<'_> = (about(t, 0.0), &exact);
-            let around: Along<'_> = (about(t, units * t), &widened);
+            let around: Along<'_> = (about(t, NEAR * t), &widened);
             let passes = system.passes_kink(surface, start, around, (about(t, t), &rounded));
             passes != Some(false)
         };
