@@ -251,7 +251,7 @@ fn crossings_of_a_crease_accumulate() {
             let end = course.step(1e-2).resting().run(Setting::free(integrator));
             let case = format!("{}, {tol}: {:?}", integrator.name(), end.outcome);
             assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
-            assert!((end.t - right).abs() < 1e-3, "{case}, not {right}");
+            assert!((end.t - right).abs() < 3e-4, "{case}, not {right}");
         }
     }
 }

@@ -104,8 +104,8 @@ pub fn compared() -> &'static [Compiled] {
             });
             models.extend(compiled! {
                 systems:
-                DampedSleigh OnePole WalkerWithMultiplier TableWall MagneticDisk IntegrableBead Rheonomic FallingDisk MixedDisk NonholonomicParticle HelicalCircle CurvedDual
-                RouthSphere
+                DampedSleigh OnePole WalkerWithMultiplier TableWall MagneticDisk IntegrableBead Rheonomic FallingDisk
+                MixedDisk NonholonomicParticle HelicalCircle CurvedDual RouthSphere
             });
         }
         models

@@ -3,7 +3,7 @@
 
 use core::cmp::Ordering;
 
-use dalembert_expr::{Ball, BallPoint, ExpansionPoint, ExprId, RangePoint, RealPoint};
+use dalembert_expr::{Ball, BallPoint, ExpansionPoint, ExprId, RangePoint};
 
 use super::sample::{self, Sample};
 use crate::model::Model;
@@ -20,21 +20,17 @@ pub(super) fn is_admissible(model: &Model, sample: &Sample) -> bool {
 pub(super) fn is_completed(model: &Model, sample: &Sample, point: &mut BallPoint) -> bool {
     (0..COMPLETIONS).any(|attempt| {
         let others = sample::sample(model, attempt, |symbol| sample.value(symbol).is_none());
-        let mut real = RealPoint::default();
-        for (symbol, value) in others.point_values() {
-            real.set(symbol, value);
-        }
-        let exact = BallPoint::of(&real);
+        let exact = BallPoint::of(&others.point());
         for (symbol, value) in others.point_values() {
             // An exact default value lies within rounding of its double.
             let range = exact.symbol(&model.pool, symbol);
             point.set_symbol(symbol, range.widened(f64::EPSILON * value.abs()));
         }
-        is_state(model, point)
+        is_accepted(model, point)
     })
 }
 
-fn is_state(model: &Model, point: &mut BallPoint) -> bool {
+fn is_accepted(model: &Model, point: &mut BallPoint) -> bool {
     let laws = model.surfaces.iter().map(|surface| surface.law);
     let coefficients: Vec<ExprId> = laws.filter_map(|law| law.coefficient()).collect();
     let metric = &model.lagrangian.metric;

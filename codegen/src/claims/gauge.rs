@@ -51,7 +51,7 @@ pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId
 /// (dR1_i/dt - dR0/dq^i) qdot^i = 0
 /// ```
 ///
-/// None if an equation depends on time: the velocities of a motion are no linear space.
+/// Empty if an equation depends on time: the velocities of a motion are then no linear space.
 pub(super) fn conditions_along_equations(
     model: &mut Model,
     rate: ExprId,

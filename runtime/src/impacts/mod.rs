@@ -12,6 +12,7 @@ mod hits;
 mod hops;
 mod impulse;
 mod instantaneous;
+mod kinks;
 mod passing;
 mod place;
 mod release;
