@@ -1,6 +1,6 @@
 //! Motion along surfaces whose gaps have kinks: roads that turn uphill or downhill, from one place or one time on.
 
-use dalembert::{Instance, Outcome};
+use dalembert::Outcome;
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
 use dalembert_stability::course::Course;
