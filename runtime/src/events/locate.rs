@@ -517,11 +517,15 @@ fn narrow(drop: Drop, mut value: impl FnMut(f64) -> f64) -> Drop {
         // no change of sign, because rounding decides there, is followed by one further away.
         let part = next_part(x, f);
         let margin = (reach * resolution / width).min(0.5);
-        let trial = if part >= 1.0 - margin {
+        let mut trial = if part >= 1.0 - margin {
             x[1] - margin * (x[1] - x[0])
         } else {
             x[0] + part.max(margin) * (x[1] - x[0])
         };
+        if trial == x[1] {
+            // The root is so close to 0 that it cannot be told from there as a part of the bracket.
+            trial = x[1] + f[1] / (f[1] - f[0]) * (x[0] - x[1]);
+        }
         reach *= if part <= margin || part >= 1.0 - margin {
             4.0
         } else {

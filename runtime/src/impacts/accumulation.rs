@@ -96,6 +96,11 @@ impl<G: StateVector> Accumulation<G> {
         are_many.then_some(Ends::AtOneTime(t))
     }
 
+    /// Time of the last impact.
+    pub(super) fn last(&self) -> Option<f64> {
+        self.coincident.last()
+    }
+
     /// True if passages through surfaces, this one among them, followed each other ever faster until the time `t`,
     /// where two of them cannot be distinguished.
     pub(super) fn has_passed_on(&self, surface: usize, t: f64) -> bool {

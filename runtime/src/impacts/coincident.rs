@@ -88,6 +88,11 @@ impl<G: StateVector> Coincident<G> {
         self.on_each[surface].count += 1;
     }
 
+    /// Time of the last impact.
+    pub(super) fn last(&self) -> Option<f64> {
+        self.impacts.last()
+    }
+
     /// True if there are too many impacts at one time to wait for their end.
     pub(super) fn are_many(&self) -> bool {
         self.impacts.count() >= MANY

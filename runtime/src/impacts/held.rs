@@ -27,6 +27,9 @@ use crate::state::{StateVector, scaled};
 
 /// Square of a gap rate, relative to that of a motion straight to the surface, up to which it may be an error.
 const ERRORS: f64 = 1.0 / (1 << 16) as f64;
+/// Square of a contact force, relative to that of a force straight to the surface with the effect of all other forces,
+/// up to which it may be a rounding error: the square of `2^-40`.
+const FORCELESS: f64 = 1.0 / (1_u128 << 80) as f64;
 /// Relative change of positions that leaves a kink.
 const STEP_ASIDE: f64 = 4.0 * f64::EPSILON;
 /// Size of a residual that counts as rounding, relative to the right-hand side.
@@ -144,10 +147,44 @@ impl<G: StateVector> Held<G> {
         if let Some(force) = self.trace(system, t, state, &motion)? {
             motion = sum(&motion, 1.0, &force);
         }
-        match system.gap_accelerations(t, state, &motion)? {
-            Some(accelerations) => self.against(system, t, state, &accelerations),
-            None => Ok(None),
+        let Some(accelerations) = system.gap_accelerations(t, state, &motion)? else {
+            return Ok(None);
+        };
+        let mut sizes = self.against(system, t, state, &accelerations)?;
+        if let Some(sizes) = &mut sizes
+            && sizes.as_slice().iter().any(|&size| size < 0.0)
+        {
+            self.drop_rounding(system, (t, state), &motion, sizes)?;
         }
+        Ok(sizes)
+    }
+
+    /// Sets negative sizes to 0 that may be rounding errors: a surface between bodies that fall together has no force.
+    fn drop_rounding<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        (t, state): (f64, &Sys::State),
+        motion: &Sys::Impulse,
+        sizes: &mut G,
+    ) -> Result<(), Fault> {
+        let mut kicked = *state;
+        system.kick(&mut kicked, 1.0, motion);
+        let (qdot, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
+        let (moved, pushed) = (system.velocity(t, &kicked)?, system.momentum(t, &kicked)?);
+        // The sizes of the terms whose sum is the product of the motion with itself.
+        let pairs = (moved.as_slice().iter().zip(qdot.as_slice()))
+            .zip(pushed.as_slice().iter().zip(p.as_slice()));
+        let square: f64 = pairs
+            .map(|((w, v), (q, p))| ((w - v) * (q - p)).abs())
+            .sum();
+        for surface in self.iter() {
+            let size = &mut sizes.as_mut_slice()[surface];
+            let compliance = system.contact(surface, t, state)?.constrained_compliance;
+            if *size < 0.0 && *size * *size * compliance <= FORCELESS * square {
+                *size = 0.0;
+            }
+        }
+        Ok(())
     }
 
     /// The force of the instantaneous constraints for these rates of momenta or quasi-velocities.

@@ -70,6 +70,11 @@ impl<G: StateVector> Hits<G> {
         self.at_hand[surface]
     }
 
+    /// Number of all surfaces, at hand or not.
+    pub(super) fn count(&self) -> usize {
+        self.at_hand.count()
+    }
+
     /// True if any surface is at hand.
     pub(super) fn is_some(&self) -> bool {
         self.at_hand.iter().any(|is_at_hand| is_at_hand)

@@ -3,6 +3,7 @@
 use core::ops::ControlFlow;
 
 use super::accumulation::{Accumulation, Bounce, Ends};
+use super::bottom::Brief;
 use super::corner::Recurrence;
 use super::held::Held;
 use super::hits::Hits;
@@ -632,15 +633,23 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             let mut at_hand = Hits::all_of(held.iter().chain(self.resting.held().iter()), &rates);
             if theta == 0.0 {
                 // Holding a surface moves the positions, by errors of the motion so far.
-                self.watch
-                    .touched()
-                    .for_each(|surface| at_hand.add(surface));
+                self.watch.add_reached(&mut at_hand, now)?;
             }
             return self.watch.leave(&at_hand, now, rates);
         }
         let mut hits = self.watch.hits(theta, now)?;
         held.iter().for_each(|surface| hits.add(surface));
-        self.strike(hits, now, observer)?;
+        if self.ends_at_bottom(&hits, Brief::UNRESOLVED, now, observer)? {
+            return Ok(());
+        }
+        match self.strike(hits, now, observer) {
+            Err(Outcome::Ambiguous { .. } | Outcome::StartsInside { .. })
+                if self.ends_at_bottom(&hits, Brief::UNORDERED, now, observer)? =>
+            {
+                return Ok(());
+            }
+            struck => struck?,
+        }
         self.resting.bounce(now, observer)?;
         self.watch.hold(self.resting.held());
         Ok(())

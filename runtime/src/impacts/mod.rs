@@ -1,6 +1,7 @@
 //! Impacts: the effect that finds them and applies their laws.
 
 mod accumulation;
+mod bottom;
 mod coincident;
 mod corner;
 mod departure;

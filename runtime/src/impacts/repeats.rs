@@ -27,6 +27,11 @@ impl Repeats {
         self.count
     }
 
+    /// Time of the last occurrence.
+    pub(super) fn last(&self) -> Option<f64> {
+        self.last
+    }
+
     /// Number of occurrences at the last time, without the first.
     pub(super) fn count(&self) -> u32 {
         self.count

@@ -239,6 +239,35 @@ impl<G: StateVector> Resting<G> {
         Ok(true)
     }
 
+    /// Rests on several surfaces at once, where impacts on them accumulate.
+    pub(super) fn rest_on<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+        &mut self,
+        surfaces: Held<G>,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        let before = self.held;
+        for surface in before.iter().filter(|&surface| !surfaces.is_held(surface)) {
+            self.leave(surface, now, observer)?;
+        }
+        self.held = surfaces;
+        surfaces.settle(now)?;
+        for surface in surfaces.iter().filter(|&surface| !before.is_held(surface)) {
+            show(
+                observer,
+                Hold {
+                    t: now.t,
+                    surface,
+                    back: None,
+                    state: *now.state,
+                    begins: true,
+                    accumulation: Some(now.t),
+                },
+            )?;
+        }
+        Ok(())
+    }
+
     /// Leaves the surfaces from which the motion rises after impacts, and those that would have to pull.
     pub(super) fn bounce<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,

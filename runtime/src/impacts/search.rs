@@ -83,7 +83,7 @@ impl<Sys: Impacting> Watch<Sys> {
                     return Err(Outcome::StepUnderflow { t: step.t_start() });
                 }
                 Found::Unfinished(part) => (part, None),
-                Found::Nothing if glance.is_due(surface) && is_active(surface, step, 1.0) => {
+                Found::Nothing if self.is_due(surface, glance) && is_active(surface, step, 1.0) => {
                     (1.0, Some(last_rate))
                 }
                 Found::Nothing => continue,
@@ -95,6 +95,12 @@ impl<Sys: Impacting> Watch<Sys> {
             self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
         }
         Ok(())
+    }
+
+    /// True if a gap reaches 0 at the end of the step within the rounding of times, and does not stay there all along.
+    fn is_due(&self, surface: usize, glance: &Glance<Sys::Gaps>) -> bool {
+        let is_off = self.gaps.as_slice()[surface] != 0.0 || self.rates.as_slice()[surface] > 0.0;
+        is_off && glance.is_due(surface)
     }
 
     /// Lets the integrator solve for the hit at `theta`, if it can: the step then ends there. Returns the fraction of
@@ -152,6 +158,11 @@ impl<Sys: Impacting> Watch<Sys> {
             until,
         };
         let ends = [gap, glance.gaps.as_slice()[surface]];
+        // The motion behind another hit does not take place, and adds no rounding errors.
+        let sizes = match until < 1.0 {
+            true => self.sizes_until(until),
+            false => self.sizes,
+        };
         // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate leaves the
         // touched surface, whatever the rounding error of the gap.
         let leaves_at_once = slope >= Some(0.0) && glance.is_moment();
@@ -162,7 +173,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 ends,
                 whole,
             };
-            let found = first_fall(surface, step, &mut self.path, &self.sizes, known, start);
+            let found = first_fall(surface, step, &mut self.path, &sizes, known, start);
             let is_open = !(leaves_at_once && matches!(found, Search::Pole(_)));
             if is_open && let Some(part) = self.hidden(surface, found, start, step) {
                 match self.depart(surface, start, step, glance)? {
@@ -224,19 +235,22 @@ impl<Sys: Impacting> Watch<Sys> {
         if !is_active(surface, step, places.before) {
             return Ok(ControlFlow::Continue(Fall::Elsewhere));
         }
-        if self.falls_at_start(surface, places.before, start, step) {
-            return match self.departure(surface, step, glance)? {
-                Departure::Pressed(outcome) => Err(outcome),
-                Departure::Rises(_) if places.after < 1.0 => {
-                    Ok(ControlFlow::Continue(Fall::Elsewhere))
-                }
-                _ => Ok(ControlFlow::Break(Found::Nothing)),
-            };
+        if !self.falls_at_start(surface, places.before, start, step) {
+            let approach = self.approach(surface, step, places)?;
+            if let Some((there, rate)) = approach {
+                return Ok(ControlFlow::Break(Found::Hit(there, rate)));
+            }
+            // The motion rises from the surface, but the time of this flight cannot be resolved.
+            let takes_no_time = start.slope.is_some() && step.time(places.after) == step.t_start();
+            if !takes_no_time {
+                return Ok(ControlFlow::Continue(Fall::Unapproached));
+            }
         }
-        Ok(match self.approach(surface, step, places)? {
-            Some((there, rate)) => ControlFlow::Break(Found::Hit(there, rate)),
-            None => ControlFlow::Continue(Fall::Unapproached),
-        })
+        match self.departure(surface, step, glance)? {
+            Departure::Pressed(outcome) => Err(outcome),
+            Departure::Rises(_) if places.after < 1.0 => Ok(ControlFlow::Continue(Fall::Elsewhere)),
+            _ => Ok(ControlFlow::Break(Found::Nothing)),
+        }
     }
 
     /// Rounding error of a gap at a fraction of the step.

@@ -70,7 +70,9 @@ impl<Sys: Impacting> Watch<Sys> {
             return Ok(false);
         }
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
-        let is_near = gap == 0.0 || gap.abs() <= roundings * self.rounding_at_cut(surface, now);
+        let is_near = gap == 0.0
+            || self.stays_touched(surface, gap)
+            || gap.abs() <= roundings * self.rounding_at_cut(surface, now);
         Ok(is_near && now.system.surface_active(surface, now.t, now.state))
     }
 }

@@ -169,11 +169,28 @@ impl<Sys: Impacting> Watch<Sys> {
         self.guarded[surface] && !is_in_front && !self.held.is_held(surface)
     }
 
-    /// The surfaces that the motion touches at the start of the step.
-    pub(super) fn touched(&self) -> impl Iterator<Item = usize> + '_ {
-        let gaps = self.gaps.as_slice().iter();
-        gaps.enumerate()
-            .filter_map(|(surface, gap)| (*gap == 0.0).then_some(surface))
+    /// True if the motion touched a wall at the start of the step and has not risen from it up to where it has this gap.
+    /// The gap is the sum of the errors of the steps along the wall.
+    pub(super) fn stays_touched(&self, surface: usize, gap: f64) -> bool {
+        self.gaps.as_slice()[surface] == 0.0 && gap <= 0.0 && !self.is_passable(surface)
+    }
+
+    /// Adds the walls in front of which the motion was at the start of the step, and which it no longer is after a small
+    /// correction of the positions.
+    pub(super) fn add_reached(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        let gaps = measured(now)?;
+        for (surface, gap) in self.gaps.as_slice().iter().enumerate() {
+            let was_before = *gap == 0.0 || (*gap > 0.0 && !self.is_passable(surface));
+            if was_before && (*gap == 0.0 || gaps.as_slice()[surface] < 0.0) {
+                hits.add(surface);
+            }
+        }
+        self.here = Some(gaps);
+        Ok(())
     }
 
     pub(super) fn is_passable(&self, surface: usize) -> bool {
@@ -259,18 +276,22 @@ impl<Sys: Impacting> Watch<Sys> {
         (self.steps, self.errors) = (0, 0.0);
         let (held, here) = (self.held, self.here.take());
         let is_at_hand = |surface: usize| hits.is_at_hand(surface) || held.is_held(surface);
-        self.gaps = rates.zeroed();
         if (0..self.gaps.count()).all(is_at_hand) {
+            self.gaps = rates.zeroed();
             self.sizes = *now.state;
             return Ok(());
         }
-        let gaps = match here {
+        let mut gaps = match here {
             Some(gaps) => gaps,
             None => measured(now)?,
         };
-        for surface in (0..self.gaps.count()).filter(|&surface| !is_at_hand(surface)) {
-            self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
+        for surface in 0..gaps.count() {
+            let gap = &mut gaps.as_mut_slice()[surface];
+            if is_at_hand(surface) || self.stays_touched(surface, *gap) {
+                *gap = 0.0;
+            }
         }
+        self.gaps = gaps;
         // The gaps now have the rounding errors of the last flight; later gaps have those of the next one.
         let checked = self.check_negative(now);
         self.sizes = *now.state;

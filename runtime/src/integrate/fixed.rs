@@ -201,9 +201,11 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         precise: Precise<S>,
     ) -> Result<(), StepFailure> {
         let (t, state) = (now.t, &precise.value);
+        // While surfaces hold the motion, another method steps.
+        let keeps_grid = self.has_met && now == self.ends.t[1];
         self.ends.place(now, precise);
         self.made = 0.0;
-        if !self.has_met {
+        if !keeps_grid {
             (self.grid, self.target) = (Grid::starting(now), None);
         }
         self.has_met = false;
