@@ -97,24 +97,26 @@ impl<Sys: Impacting> Impacts<Sys> {
             let Some(forces) = bottom.sizes(system, t, now.state)? else {
                 return Ok(None);
             };
-            let force = |surface: usize| forces.as_slice()[surface];
-            let weakest = bottom.iter().min_by(|&a, &b| force(a).total_cmp(&force(b)));
-            if let Some(pulling) = weakest.filter(|&surface| force(surface) <= 0.0) {
-                bottom.release(pulling);
-                continue;
-            }
+            let mut rising = None;
             for surface in bottom.iter() {
                 let contact = system.contact(surface, t, now.state)?;
-                let back = contact.constrained_compliance * force(surface);
+                let back = contact.constrained_compliance * forces.as_slice()[surface];
                 let rate = rates.as_slice()[surface].abs();
                 let is_brief = 2.0 * rate <= back * brief.moment * t.abs()
                     || rate * rate
                         <= 2.0 * back * brief.height * self.watch.rounding_at_cut(surface, now);
-                if !is_brief {
-                    return Ok(None);
+                if back <= 0.0 || !is_brief {
+                    rising = Some(surface);
                 }
             }
-            return Ok(Some(bottom));
+            match rising {
+                Some(surface) => bottom.release(surface),
+                None => {
+                    let must_act =
+                        |surface| hits.is_approached(surface, &rates) && !bottom.is_held(surface);
+                    return Ok((!(0..hits.count()).any(must_act)).then_some(bottom));
+                }
+            }
         }
         Ok(None)
     }

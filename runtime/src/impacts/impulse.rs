@@ -624,7 +624,13 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        self.watch.check_behind(theta, now)?;
+        if let Err(outcome) = self.watch.check_behind(theta, now) {
+            let none = Hits::none(&now.system.zero_gaps());
+            return match self.ends_at_bottom(&none, Brief::UNORDERED, now, observer)? {
+                true => Ok(()),
+                false => Err(outcome),
+            };
+        }
         let held = *self.resting.held();
         self.resting.arrive_at_kink(now)?;
         if self.resting.turn(now, observer)? {

@@ -10,7 +10,6 @@ use crate::contract::TaylorField;
 use crate::error::Fault;
 use crate::integrate::controller::landing_within;
 use crate::integrate::instant::Instant;
-use crate::integrate::rough::power_of_two;
 use crate::integrate::stats::Counters;
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
@@ -48,6 +47,7 @@ struct Plan {
     reach: f64,
     arrival: Instant,
     made: f64,
+    next_unit: f64,
 }
 
 impl<F: TaylorField, L: Numbers> Abreast<F, L> {
@@ -134,16 +134,13 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             let taylor = walker.taylor();
             let reach = taylor.reach_of(sizes.map(|size| size.lane(lane)));
             let reach = reach.min(LONGEST) * taylor.unit;
-            let (made, arrival) = landing_within(
-                taylor.max_step,
-                taylor.ends.t[0],
-                taylor.length(reach),
-                walker.t_end(),
-            );
+            let (length, t_end) = (taylor.length(reach), walker.t_end());
+            let (made, arrival) = landing_within(taylor.max_step, taylor.ends.t[0], length, t_end);
             *plan = Plan {
                 reach,
                 arrival,
                 made,
+                next_unit: taylor.unit_after(length, t_end),
             };
         }
         plans
@@ -198,7 +195,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             return false;
         }
         taylor.ends.t[1] = plan.arrival;
-        taylor.next_unit = power_of_two(taylor.length(plan.reach));
+        taylor.next_unit = plan.next_unit;
         scatter(&mut taylor.expansion.firsts, &self.expansion.firsts, lane);
         let rows = taylor.expansion.gaps.iter_mut().zip(&self.expansion.gaps);
         for (target, row) in rows.take(order + 1) {

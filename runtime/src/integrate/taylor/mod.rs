@@ -274,6 +274,15 @@ impl<F: TaylorField> Taylor<F> {
         reach.min(self.max_step).min(self.limit).max(least)
     }
 
+    /// Unit of time of the series after a step whose coefficients allow the length `h`.
+    ///
+    /// NOTE: a motion under constant forces allows any length. Without the end of the run as a limit, the unit would grow
+    /// with every impact until its powers overflow.
+    #[inline(always)]
+    fn unit_after(&self, h: f64, t_end: f64) -> f64 {
+        rough::power_of_two(h.min(t_end - self.ends.t[0].t))
+    }
+
     /// Records an accepted step. `made` is its length, `reach` the length that its coefficients allow.
     #[inline(always)]
     fn accept(&mut self, made: f64, reach: f64, counters: &mut Counters) {

@@ -70,7 +70,7 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
         let t = self.ends.t[0].t;
         let reach = self.expand(field, counters)?.min(LONGEST) * self.unit;
         let mut h = self.length(reach);
-        self.next_unit = power_of_two(h);
+        self.next_unit = self.unit_after(h, t_end);
         loop {
             let (made, arrival) = landing_within(self.max_step, self.ends.t[0], h, t_end);
             let attempt = self.attempt(field, made / self.unit, arrival, counters);
