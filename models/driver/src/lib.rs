@@ -73,7 +73,7 @@ pub use model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
 pub use modulo::{Generator, NoGroup, Symmetries};
-pub use orbit::{Found, Search};
+pub use orbit::{Found, Growth, Search};
 pub use refusal::{Refusal, Uncertified};
 pub use run::{
     Changes, Contact, Control, Ending, Impact, ImpactTally, InputFunction, Piece, Settings, Watch,

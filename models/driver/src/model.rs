@@ -13,7 +13,7 @@ use crate::control::{Controlled, Task, Unsought};
 use crate::dynamic::{Landing, Leg, Unlanded};
 use crate::integrator::Form;
 use crate::linearisation::{Linearisation, Place, Unlinear};
-use crate::orbit::{Found, Search};
+use crate::orbit::{Found, Growth, Search};
 use crate::refusal::Refusal;
 use crate::run::{Control, Ending, Settings, Watch};
 
@@ -251,12 +251,13 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<[Point; 2], OrbitError>>, Refusal>;
-    /// The largest Lyapunov exponent per return. It is measured over the returns of the search, from the first arrival
-    /// after this state. `None` for a scene without variations.
+    /// The largest Lyapunov exponent per return, from the first arrival after this state. `None` for a scene without
+    /// variations.
     fn exponent(
         &self,
         origin: &Origin,
         search: &Search,
+        growth: Growth,
     ) -> Result<Option<Result<f64, OrbitError>>, Refusal>;
     /// Searches for all motions between two configurations; `None` for a scene without variations. Calls `tell` with
     /// the progress.

@@ -136,8 +136,17 @@ impl Work for ForReturn {
     }
 }
 
+/// What a Lyapunov exponent is measured on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Growth {
+    /// A small deviation over the returns of the search.
+    OfDeviation,
+    /// The periodic orbit through the first arrival, which has as many returns as the search.
+    OfOrbit,
+}
+
 /// Computation of a Lyapunov exponent.
-pub(crate) struct ForExponent;
+pub(crate) struct ForExponent(pub Growth);
 
 impl Work for ForExponent {
     type Output = f64;
@@ -150,7 +159,15 @@ impl Work for ForExponent {
     ) -> Result<f64, OrbitError> {
         let mut stepper = Taylor::new(search.tolerance);
         let mut section = section(system, search, search.horizon, &mut stepper);
-        section.exponent(start, search.returns)
+        match self.0 {
+            Growth::OfDeviation => section.exponent(start, search.returns),
+            Growth::OfOrbit => {
+                let whole = section
+                    .with_returns(search.returns)
+                    .exponent_of_orbit(start)?;
+                Ok(whole / f64::from(search.returns.max(1)))
+            }
+        }
     }
 }
 

@@ -23,7 +23,9 @@ use crate::linearisation::{Linearisation, Lineariser, Place, Unlinear};
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together, point,
 };
-use crate::orbit::{ForBranch, ForExponent, ForOrbit, ForReturn, Found, Search, Visit, Work};
+use crate::orbit::{
+    ForBranch, ForExponent, ForOrbit, ForReturn, Found, Growth, Search, Visit, Work,
+};
 use crate::owner::{OfForm, OfType, Owner};
 use crate::refusal::Refusal;
 use crate::run::{self, Control, Ending, Settings, Watch, abreast};
@@ -417,8 +419,9 @@ impl<O: Owner> Runs for Typed<O> {
         &self,
         origin: &Origin,
         search: &Search,
+        growth: Growth,
     ) -> Result<Option<Result<f64, OrbitError>>, Refusal> {
-        self.at_section(origin, search, ForExponent)
+        self.at_section(origin, search, ForExponent(growth))
     }
 
     fn connect(

@@ -1,7 +1,8 @@
 //! Growth of small deviations per return: the largest Lyapunov exponent of a section.
 
 use super::Tangent;
-use super::chart::{Chart, Fixed, add};
+use super::chart::{Chart, Fixed, add, columns};
+use super::eigenvalues::eigenvalues;
 use super::orbit::OrbitError;
 use super::section::Section;
 use crate::contract::Variational;
@@ -20,8 +21,8 @@ where
 {
     /// The mean logarithm of the factor by which one application of the map lengthens a small deviation. The run begins
     /// at `state`. After its first arrival, 8 images turn the deviation to the direction of fastest growth; the mean is
-    /// over the next `images` images, at least 1. It tends to the largest Lyapunov exponent. For a periodic orbit, this
-    /// is the logarithm of the largest modulus of its multipliers. It is minus infinity if the deviation vanishes.
+    /// over the next `images` images, at least 1. It tends to the largest Lyapunov exponent; on a periodic orbit,
+    /// [`Section::exponent_of_orbit`] has no error of a finite time. It is minus infinity if the deviation vanishes.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where the section is not met or the motion to it has no derivative,
@@ -53,6 +54,36 @@ where
             deviation = image;
         }
         Ok(sum / f64::from(images.max(1)))
+    }
+
+    /// The largest Lyapunov exponent of the periodic orbit that a state leads to, per application of the map: the
+    /// logarithm of the largest modulus of its multipliers. The run begins at `state`; its first arrival must be a fixed
+    /// point of the map. It is minus infinity if all multipliers vanish.
+    ///
+    /// # Errors
+    /// Those of [`Section::exponent`].
+    pub fn exponent_of_orbit(&mut self, state: &Sys::State) -> Result<f64, OrbitError> {
+        if self.system.depends_on_time() {
+            return Err(OrbitError::DependsOnTime);
+        }
+        let first = self.arrive(state, &mut [])?.before;
+        let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
+        let (chart, point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
+        let dimension = chart.dimension();
+        let mut tangents = Sys::tangents();
+        let tangents = &mut tangents.as_mut()[..dimension];
+        for (index, tangent) in tangents.iter_mut().enumerate() {
+            *tangent = Tangent::of_state(chart.direction(index));
+        }
+        self.pass(&point, self.returns, tangents)?;
+        let mut derivative = columns(self.system);
+        for (column, image) in derivative.as_mut().iter_mut().zip(&*tangents) {
+            *column = chart.components(&image.state);
+        }
+        let multipliers =
+            eigenvalues(derivative.as_mut(), dimension).ok_or(OrbitError::NoMultipliers)?;
+        let moduli = multipliers.iter().map(|[re, im]| libm::hypot(re, im));
+        Ok(math::ln(moduli.fold(0.0, f64::max)))
     }
 
     /// Moves a point to its image. Scales a deviation to length 1, and returns the length of its image and the image.

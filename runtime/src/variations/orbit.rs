@@ -25,6 +25,9 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same bound in units of the integrator's tolerance. The larger of the two bounds applies.
 const STEPS: f64 = 16.0;
 
+/// Damping of a Newton step for a miss much larger than the point, relative to the square of the derivative.
+const DAMPING: f64 = 1.0 / 64.0;
+
 /// A closed point is final if its residual exceeds this multiple of the residual before it.
 const LAST_GAIN: f64 = 0.25;
 
@@ -113,7 +116,9 @@ pub(super) struct Trial<Sys: Variational> {
     pub(super) point: Sys::State,
     pub(super) chart: Chart<Sys>,
     pub(super) passed: Passed<Sys>,
-    /// Image minus point, along the directions.
+    /// Image minus point.
+    change: Sys::State,
+    /// The same along the directions.
     pub(super) miss: Sys::State,
     pub(super) residual: f64,
     pub(super) derivative: Sys::Columns,
@@ -263,6 +268,7 @@ where
             point,
             chart,
             passed,
+            change,
             miss: chart.components(&change),
             residual: chart.size(&change),
             derivative,
@@ -298,7 +304,8 @@ fn finish<Sys: Variational>(
     })
 }
 
-/// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss (Levenberg-Marquardt).
+/// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss relative to that of the point
+/// (Levenberg-Marquardt).
 ///
 /// Near a family of orbits, `derivative - 1` along the family is as small as the miss, but not 0: undamped steps would
 /// wander along the family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74
@@ -309,7 +316,10 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     for (i, column) in matrix.as_mut()[..dimension].iter_mut().enumerate() {
         column.as_mut_slice()[i] -= 1.0;
     }
-    let damping = crate::math::sqrt(dot(&trial.miss, &trial.miss));
+    let length = crate::math::sqrt(dot(&trial.miss, &trial.miss));
+    let squares = matrix.as_ref()[..dimension].iter().map(|it| dot(it, it));
+    let scale = squares.fold(0.0, f64::max).min(1.0);
+    let damping = DAMPING * scale * length / (length + trial.chart.size(&trial.point));
     let (columns, turned) = (matrix.as_mut(), turned.as_mut());
     let solution = least_squares(columns, turned, dimension, &trial.miss, damping);
     let mut step = system.zero_state();
@@ -319,11 +329,17 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     step
 }
 
-/// True if `better` is closer to its image than `trial`, in the largest component or in length. A sufficiently short
-/// Newton step always lowers the length.
+/// True if `better` is closer to its image than `trial`, in the largest component or in length, both in the units of
+/// `trial`. A sufficiently short Newton step always lowers the length.
 fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
-    let [length, before] = [better, trial].map(|trial| dot(&trial.miss, &trial.miss));
-    better.residual < trial.residual || length < before
+    let chart = &trial.chart;
+    let square = |change: &Sys::State| {
+        let parts = change.as_slice().iter().zip(chart.scale().as_slice());
+        parts
+            .map(|(part, scale)| (part / scale) * (part / scale))
+            .sum::<f64>()
+    };
+    chart.size(&better.change) < trial.residual || square(&better.change) < square(&trial.change)
 }
 
 /// The Frobenius norm of the derivative, at least 1: an upper bound on the factor by which the map lengthens a

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use dalembert::Outcome;
 use dalembert_driver::{
-    Contact, Ending, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
+    Contact, Ending, Growth, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
 };
 
 use super::orbits::{self, Return};
@@ -113,8 +113,8 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     }
 }
 
-/// The Lyapunov exponent from the last return on, if requested; the error explains why there is none. On an orbit it is
-/// the mean over whole periods.
+/// The Lyapunov exponent from the last return on, if requested; the error explains why there is none. On an orbit, with a
+/// period above 0, it follows from the multipliers.
 fn grown(
     runner: &Runner<'_>,
     returns: &Returns,
@@ -122,15 +122,19 @@ fn grown(
     last: &Point,
 ) -> Option<Result<f64, String>> {
     let mut search = returns.exponent.clone()?;
-    let period = u32::try_from(period).unwrap_or(1).max(1);
-    let whole = search.returns.checked_next_multiple_of(period);
-    search.returns = whole.unwrap_or(search.returns);
+    let growth = match u32::try_from(period) {
+        Ok(period) if period > 0 => {
+            search.returns = period;
+            Growth::OfOrbit
+        }
+        _ => Growth::OfDeviation,
+    };
     let origin = Origin {
         q: last.q.clone(),
         rates: Rates::Velocities(last.qdot.clone()),
         policy: OffConstraint::Keep,
     };
-    Some(match runner.model().exponent(&origin, &search) {
+    Some(match runner.model().exponent(&origin, &search, growth) {
         Ok(Some(Ok(exponent))) => Ok(exponent),
         Ok(Some(Err(error))) => Err(error.to_string()),
         Ok(None) => Err("the scene has no variations".to_owned()),
