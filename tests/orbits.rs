@@ -41,6 +41,26 @@ static CLOCK: Text = Text::new(
     }",
 );
 
+/// Numbers that decay towards an equilibrium, seen by a clock.
+static DECAY: Text = Text::new(
+    "Decay {
+        coordinates { x; y; tau; }
+        parameters { k = 1; }
+        field { dot(x) = -0.2*x + 0.5*k; dot(y) = -2*x - 0.3*y + k; dot(tau) = 1; }
+        impacts { tick: tau <= 2 => reset { tau = 0; }; }
+    }",
+);
+
+/// A spiral towards the origin, far from a circle, seen by a clock.
+static SPIRAL: Text = Text::new(
+    "Spiral {
+        coordinates { x; y; phase: angle; }
+        field { dot(x) = -x/20 + 6*y; dot(y) = -y/20 - 3/200*x; dot(phase) = 1; }
+        impacts { strobe: sin(phase) <= 0 => reset { }; }
+        initial { x = 1; y = 1; phase = -1; until = 5; }
+    }",
+);
+
 /// Largest duration of a return in these tests.
 const HORIZON: f64 = 1e4;
 
@@ -168,6 +188,59 @@ fn an_orbit_is_found_from_beside_it() {
         point[0].abs() < 1e-12 && point[2].abs() < 1e-12,
         "{point:?}"
     );
+}
+
+/// The map is affine, so that an undamped Newton step from anywhere is exact.
+#[test]
+fn the_fixed_point_of_an_affine_map_is_found_from_far_away_in_any_units() {
+    for k in [1e-3, 1.0, 1e3] {
+        let model = DECAY.with([("k", k)]);
+        for [x, y] in [
+            [1.0, 5.0],
+            [1.0, 40.0],
+            [0.0, 0.0],
+            [2.0, -10.0],
+            [300.0, 7.0],
+        ] {
+            let found = orbit(&model, &vector(&[k * x, k * y, 0.0]), 0, 1).expect("an orbit");
+            let case = format!("{k}, {x}, {y}: {} steps", found.iterations);
+            assert!(found.iterations <= 12, "{case}");
+            let at = found.point.before.as_ref();
+            assert!((at[0] - 2.5 * k).abs() < 1e-9 * k, "{case}");
+            assert!((at[1] + 40.0 / 3.0 * k).abs() < 1e-9 * k, "{case}");
+            let multipliers: Vec<[f64; 2]> = found.multipliers.iter().collect();
+            for (multiplier, right) in multipliers.iter().zip([-0.4_f64, -0.6]) {
+                assert!((multiplier[0] - right.exp()).abs() < 1e-9, "{case}");
+            }
+        }
+    }
+}
+
+/// The multipliers are complex, so that a single deviation grows and shrinks in turn.
+#[test]
+fn the_exponent_of_an_orbit_is_that_of_its_multipliers() {
+    for further in [1, 2, 7] {
+        let mut models = dalembert_command::all();
+        models.push(SPIRAL.entry());
+        let line = format!(
+            "map spiral --vary x=0.4..1.2:3 --returns 150 --surface strobe --lyapunov {further} --csv -"
+        );
+        let finished = command::line(models, &line, "");
+        assert_eq!(finished.exit, Exit::Reached, "{}", finished.errors);
+        let mut lines = finished.output.lines();
+        let names = lines.next().expect("names").split(',');
+        let column = names.into_iter().position(|name| name == "exponent");
+        let column = column.expect("exponents");
+        let exponents =
+            lines.map(|row| row.split(',').nth(column).expect("a value").parse::<f64>());
+        let exponents: Vec<f64> = exponents.map(|value| value.expect("a number")).collect();
+        let right = -core::f64::consts::PI / 10.0;
+        assert_eq!(exponents.len(), 3);
+        assert!(
+            exponents.iter().all(|it| (it - right).abs() < 1e-9),
+            "{exponents:?}"
+        );
+    }
 }
 
 #[test]

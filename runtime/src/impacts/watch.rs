@@ -234,7 +234,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let gaps = measured(now)?;
         self.grazes.fill(Graze::None);
         self.bends = gaps.zeroed();
-        self.here = Some(gaps);
+        (self.gaps, self.here) = (gaps, Some(gaps));
         let mut at_hand = PerSurface::all(&gaps, false);
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {

@@ -102,8 +102,8 @@ pub struct MapArgs {
     )]
     pub ignore: Vec<String>,
     /// Compute the Lyapunov exponent of each cell: the mean logarithm of the growth of a small deviation per return, over
-    /// this many further returns. On an orbit it is the logarithm of its largest multiplier, divided by its period; N is
-    /// rounded up to whole periods.
+    /// this many further returns. On an orbit it is the logarithm of its largest multiplier, divided by its period,
+    /// whatever N is.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..))]
     pub lyapunov: Option<u32>,
     /// Threads and rows.

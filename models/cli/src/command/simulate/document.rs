@@ -157,6 +157,9 @@ fn event(description: &Description, impact: &Impact) -> Value {
         event["mode_minus"] = before.into();
         event["mode_plus"] = after.into();
     }
+    if impact.graze {
+        event["graze"] = true.into();
+    }
     // A reset changed the positions.
     if impact.before.q != impact.after.q {
         event["q_minus"] = vector(&impact.before.q);
