@@ -170,9 +170,10 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 
     /// True if the motion touched a wall at the start of the step and has not risen from it up to where it has this gap.
-    /// The gap is the sum of the errors of the steps along the wall.
+    /// The gap is the sum of the errors of the steps along the wall. Behind a wall with conditions the motion may be free.
     pub(super) fn stays_touched(&self, surface: usize, gap: f64) -> bool {
-        self.gaps.as_slice()[surface] == 0.0 && gap <= 0.0 && !self.is_passable(surface)
+        let is_wall = !self.is_passable(surface) && !self.guarded[surface];
+        is_wall && self.gaps.as_slice()[surface] == 0.0 && gap <= 0.0
     }
 
     /// Adds the walls in front of which the motion was at the start of the step, and which it no longer is after a small

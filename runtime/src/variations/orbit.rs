@@ -25,8 +25,11 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The same bound in units of the integrator's tolerance. The larger of the two bounds applies.
 const STEPS: f64 = 16.0;
 
-/// Damping of a Newton step for a miss much larger than the point, relative to the square of the derivative.
-const DAMPING: f64 = 1.0 / 64.0;
+/// Ratio of the decrease of the miss to that of the linear model above which the model is trusted more, and below which it
+/// is trusted less, and the factor by which the damping changes then.
+const TRUSTED: f64 = 0.75;
+const DISTRUSTED: f64 = 0.25;
+const EASED: f64 = 0.25;
 
 /// A closed point is final if its residual exceeds this multiple of the residual before it.
 const LAST_GAIN: f64 = 0.25;
@@ -156,10 +159,10 @@ where
         }
         let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
         let mut trial = self.attempt(&fixed, *near, None, None)?;
-        let mut made = 0;
+        let (mut made, mut damping) = (0, 1.0);
         while trial.residual > 0.0 && made < iterations {
             made += 1;
-            let Some(better) = self.improve(&fixed, &trial)? else {
+            let Some(better) = self.improve(&fixed, &trial, &mut damping)? else {
                 break;
             };
             let is_last = better.residual > LAST_GAIN * trial.residual;
@@ -189,20 +192,32 @@ where
         Ok(trial.residual <= f64::min(least, CLOSED * way))
     }
 
-    /// A better point along the Newton step, if one is found.
+    /// A better point along the Newton step, if one is found. Adapts the damping of the next step to how well the linear
+    /// model has predicted this one.
     fn improve(
         &mut self,
         fixed: &Fixed<Sys>,
         trial: &Trial<Sys>,
+        damping: &mut f64,
     ) -> Result<Option<Trial<Sys>>, OrbitError> {
-        let step = newton(self.system, trial);
+        let (step, predicted) = newton(self.system, trial, *damping);
         let mut factor = 1.0;
         let mut failure = None;
         for _ in 0..HALVINGS {
             let mut point = trial.point;
             add(&mut point, factor, &step);
             match self.attempt(fixed, point, None, Some(trial.element)) {
-                Ok(better) if is_nearer(&better, trial) => return Ok(Some(better)),
+                Ok(better) if is_nearer(&better, trial) => {
+                    let [before, after] =
+                        [trial, &better].map(|it| length(&trial.chart, &it.change));
+                    let gain = (before - after) / (before - predicted);
+                    if gain > TRUSTED {
+                        *damping *= EASED;
+                    } else if gain < DISTRUSTED {
+                        *damping = (*damping / EASED).min(1.0);
+                    }
+                    return Ok(Some(better));
+                }
                 Ok(_) => failure = None,
                 Err(error) => failure = Some(error),
             }
@@ -305,41 +320,44 @@ fn finish<Sys: Variational>(
 }
 
 /// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss relative to that of the point
-/// (Levenberg-Marquardt).
+/// (Levenberg-Marquardt), times a factor. Returns the length of the miss that the linear model predicts, too.
 ///
 /// Near a family of orbits, `derivative - 1` along the family is as small as the miss, but not 0: undamped steps would
 /// wander along the family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74
 /// (2005)).
-fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
+fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>, factor: f64) -> (Sys::State, f64) {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, columns(system));
     for (i, column) in matrix.as_mut()[..dimension].iter_mut().enumerate() {
         column.as_mut_slice()[i] -= 1.0;
     }
-    let length = crate::math::sqrt(dot(&trial.miss, &trial.miss));
+    let miss = crate::math::sqrt(dot(&trial.miss, &trial.miss));
     let squares = matrix.as_ref()[..dimension].iter().map(|it| dot(it, it));
     let scale = squares.fold(0.0, f64::max).min(1.0);
-    let damping = DAMPING * scale * length / (length + trial.chart.size(&trial.point));
-    let (columns, turned) = (matrix.as_mut(), turned.as_mut());
-    let solution = least_squares(columns, turned, dimension, &trial.miss, damping);
-    let mut step = system.zero_state();
+    let damping = factor * scale * miss / (miss + trial.chart.size(&trial.point));
+    let (mut slopes, turned) = (matrix, turned.as_mut());
+    let solution = least_squares(slopes.as_mut(), turned, dimension, &trial.miss, damping);
+    let (mut step, mut left) = (system.zero_state(), trial.miss);
     for (index, component) in solution.as_slice()[..dimension].iter().enumerate() {
         add(&mut step, -component, &trial.chart.direction(index));
+        add(&mut left, -component, &matrix.as_ref()[index]);
     }
-    step
+    (step, crate::math::sqrt(dot(&left, &left)))
+}
+
+/// The length of a change, in units of a chart.
+fn length<Sys: Variational>(chart: &Chart<Sys>, change: &Sys::State) -> f64 {
+    let parts = change.as_slice().iter().zip(chart.scale().as_slice());
+    let squares = parts.map(|(part, scale)| (part / scale) * (part / scale));
+    crate::math::sqrt(squares.sum::<f64>())
 }
 
 /// True if `better` is closer to its image than `trial`, in the largest component or in length, both in the units of
 /// `trial`. A sufficiently short Newton step always lowers the length.
 fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
     let chart = &trial.chart;
-    let square = |change: &Sys::State| {
-        let parts = change.as_slice().iter().zip(chart.scale().as_slice());
-        parts
-            .map(|(part, scale)| (part / scale) * (part / scale))
-            .sum::<f64>()
-    };
-    chart.size(&better.change) < trial.residual || square(&better.change) < square(&trial.change)
+    chart.size(&better.change) < trial.residual
+        || length(chart, &better.change) < length(chart, &trial.change)
 }
 
 /// The Frobenius norm of the derivative, at least 1: an upper bound on the factor by which the map lengthens a
