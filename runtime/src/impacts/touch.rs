@@ -71,7 +71,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         let roundings = 2.0 + f64::from(self.steps) / 16.0;
         let is_near = gap == 0.0
-            || self.stays_touched(surface, gap)
+            || self.stays_touched(surface, gap, now)
             || gap.abs() <= roundings * self.rounding_at_cut(surface, now);
         Ok(is_near && now.system.surface_active(surface, now.t, now.state))
     }

@@ -32,6 +32,9 @@ use crate::state::StateVector;
 /// rounding of their gaps.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
+/// Depth, in units of the rounding of the gap, up to which a wall may be touched after many steps along it.
+const DRIFT: f64 = 1024.0;
+
 /// Maximum number of surfaces for which the polynomials of the gaps are tested first, if the step is a power series.
 const FEW: usize = 8;
 
@@ -171,9 +174,17 @@ impl<Sys: Impacting> Watch<Sys> {
 
     /// True if the motion touched a wall at the start of the step and has not risen from it up to where it has this gap.
     /// The gap is the sum of the errors of the steps along the wall. Behind a wall with conditions the motion may be free.
-    pub(super) fn stays_touched(&self, surface: usize, gap: f64) -> bool {
+    pub(super) fn stays_touched(
+        &self,
+        surface: usize,
+        gap: f64,
+        now: &mut Moment<'_, Sys>,
+    ) -> bool {
         let is_wall = !self.is_passable(surface) && !self.guarded[surface];
-        is_wall && self.gaps.as_slice()[surface] == 0.0 && gap <= 0.0
+        is_wall
+            && self.gaps.as_slice()[surface] == 0.0
+            && gap <= 0.0
+            && (gap == 0.0 || gap >= -DRIFT * self.rounding_at_cut(surface, now))
     }
 
     /// Adds the walls in front of which the motion was at the start of the step, and which it no longer is after a small
@@ -287,9 +298,9 @@ impl<Sys: Impacting> Watch<Sys> {
             None => measured(now)?,
         };
         for surface in 0..gaps.count() {
-            let gap = &mut gaps.as_mut_slice()[surface];
-            if is_at_hand(surface) || self.stays_touched(surface, *gap) {
-                *gap = 0.0;
+            let gap = gaps.as_slice()[surface];
+            if is_at_hand(surface) || self.stays_touched(surface, gap, now) {
+                gaps.as_mut_slice()[surface] = 0.0;
             }
         }
         self.gaps = gaps;
