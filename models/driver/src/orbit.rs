@@ -136,7 +136,7 @@ impl Work for ForReturn {
     }
 }
 
-/// What a Lyapunov exponent is measured on.
+/// Object that a Lyapunov exponent is measured on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Growth {
     /// A small deviation over the returns of the search.

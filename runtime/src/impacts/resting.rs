@@ -223,17 +223,8 @@ impl<G: StateVector> Resting<G> {
                 }
                 self.drop_pulling(Some(surface), now, observer)?;
                 self.held.settle(now)?;
-                show(
-                    observer,
-                    Hold {
-                        t: now.t,
-                        surface,
-                        back: None,
-                        state: *now.state,
-                        begins: true,
-                        accumulation: self.accumulated[surface].take(),
-                    },
-                )?;
+                let accumulation = self.accumulated[surface].take();
+                show_begin(surface, accumulation, now, observer)?;
             }
         }
         Ok(true)
@@ -253,17 +244,7 @@ impl<G: StateVector> Resting<G> {
         self.held = surfaces;
         surfaces.settle(now)?;
         for surface in surfaces.iter().filter(|&surface| !before.is_held(surface)) {
-            show(
-                observer,
-                Hold {
-                    t: now.t,
-                    surface,
-                    back: None,
-                    state: *now.state,
-                    begins: true,
-                    accumulation: Some(now.t),
-                },
-            )?;
+            show_begin(surface, Some(now.t), now, observer)?;
         }
         Ok(())
     }
@@ -434,6 +415,26 @@ pub(super) fn squared_rate<Sys: Impacting>(
     let energy: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
     let contact = system.contact(surface, t, state)?;
     Ok(energy * contact.constrained_compliance)
+}
+
+/// Reports that a surface begins to hold the motion.
+fn show_begin<Sys: Impacting, O: Observer<Sys>>(
+    surface: usize,
+    accumulation: Option<f64>,
+    now: &Moment<'_, Sys>,
+    observer: &mut O,
+) -> Result<(), Outcome> {
+    show(
+        observer,
+        Hold {
+            t: now.t,
+            surface,
+            back: None,
+            state: *now.state,
+            begins: true,
+            accumulation,
+        },
+    )
 }
 
 fn show<Sys: Impacting, O: Observer<Sys>>(

@@ -1,11 +1,12 @@
 //! Growth of small deviations per return: the largest Lyapunov exponent of a section.
 
 use super::Tangent;
-use super::chart::{Chart, Fixed, add, columns};
+use super::chart::{Chart, Fixed, add};
 use super::eigenvalues::eigenvalues;
 use super::orbit::OrbitError;
 use super::section::Section;
 use crate::contract::Variational;
+use crate::describe::Instance;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::math;
@@ -56,36 +57,6 @@ where
         Ok(sum / f64::from(images.max(1)))
     }
 
-    /// The largest Lyapunov exponent of the periodic orbit that a state leads to, per application of the map: the
-    /// logarithm of the largest modulus of its multipliers. The run begins at `state`; its first arrival must be a fixed
-    /// point of the map. It is minus infinity if all multipliers vanish.
-    ///
-    /// # Errors
-    /// Those of [`Section::exponent`].
-    pub fn exponent_of_orbit(&mut self, state: &Sys::State) -> Result<f64, OrbitError> {
-        if self.system.depends_on_time() {
-            return Err(OrbitError::DependsOnTime);
-        }
-        let first = self.arrive(state, &mut [])?.before;
-        let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
-        let (chart, point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
-        let dimension = chart.dimension();
-        let mut tangents = Sys::tangents();
-        let tangents = &mut tangents.as_mut()[..dimension];
-        for (index, tangent) in tangents.iter_mut().enumerate() {
-            *tangent = Tangent::of_state(chart.direction(index));
-        }
-        self.pass(&point, self.returns, tangents)?;
-        let mut derivative = columns(self.system);
-        for (column, image) in derivative.as_mut().iter_mut().zip(&*tangents) {
-            *column = chart.components(&image.state);
-        }
-        let multipliers =
-            eigenvalues(derivative.as_mut(), dimension).ok_or(OrbitError::NoMultipliers)?;
-        let moduli = multipliers.iter().map(|[re, im]| libm::hypot(re, im));
-        Ok(math::ln(moduli.fold(0.0, f64::max)))
-    }
-
     /// Moves a point to its image. Scales a deviation to length 1, and returns the length of its image and the image.
     fn grown(
         &mut self,
@@ -109,5 +80,31 @@ where
             true => Ok((growth, image)),
             false => Err(OrbitError::NoMultipliers),
         }
+    }
+}
+
+impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
+where
+    Sys: Variational + Instance,
+    Step: Stepper<Sys>,
+    Effects: Effect<Sys>,
+{
+    /// The largest Lyapunov exponent of the periodic orbit that a state leads to, per application of the map: the
+    /// logarithm of the largest modulus of its multipliers. The run begins at `state`; its first arrival must be a fixed
+    /// point of the map. It is minus infinity if all multipliers vanish.
+    ///
+    /// # Errors
+    /// Those of [`Section::exponent`].
+    pub fn exponent_of_orbit(&mut self, state: &Sys::State) -> Result<f64, OrbitError> {
+        if self.system.depends_on_time() {
+            return Err(OrbitError::DependsOnTime);
+        }
+        let first = self.arrive(state, &mut [])?.before;
+        let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
+        let mut trial = self.attempt(&fixed, first, None, None)?;
+        let multipliers = eigenvalues(trial.derivative.as_mut(), trial.chart.dimension());
+        let multipliers = multipliers.ok_or(OrbitError::NoMultipliers)?;
+        let moduli = multipliers.iter().map(|[re, im]| libm::hypot(re, im));
+        Ok(math::ln(moduli.fold(0.0, f64::max)))
     }
 }
