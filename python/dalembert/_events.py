@@ -139,7 +139,7 @@ def listener(model: Model, events: Sequence[Event], call: Callable[[Occurrence],
 
 @contextmanager
 def progress(shows: bool, until: float | None, name: str) -> Iterator[Callable[[float], None] | None]:
-    """A function that shows the progress of a run: by tqdm if it is installed, else in a line of the terminal."""
+    """A function that shows the time that a run has reached: by tqdm if it is installed, else in a line of the terminal."""
     if not shows:
         yield None
         return
@@ -151,5 +151,3 @@ def progress(shows: bool, until: float | None, name: str) -> Iterator[Callable[[
         return
     with tqdm(total=until, desc=name, unit="t", bar_format=None if until is None else "{l_bar}{bar}| {n:.6g}/{total:g}") as bar:
         yield lambda t: bar.update(t - bar.n)
-        if until is not None:
-            bar.update(until - bar.n)

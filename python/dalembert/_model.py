@@ -466,7 +466,11 @@ class Model(Swept):
             "on_event": _events.listener(self, wanted, on_event),
         }
         with _events.progress(progress, until or self.initial.get("until"), self.name) as shown:
-            return Run(self, native.simulate(request | {"on_progress": shown}), wanted)
+            run = Run(self, native.simulate(request | {"on_progress": shown}), wanted)
+            # Also runs that end before anything is shown show their end.
+            if shown:
+                shown(run.outcome.t)
+            return run
 
     def evaluate(
         self,

@@ -155,12 +155,15 @@ def test_both_sides_of_an_impact():
         run(0.1, side="both")
 
 
+@pytest.mark.parametrize(("until", "impacts", "end"), [(1.0, None, "1"), (5.0, 1, "0.451524")])
 @pytest.mark.parametrize("has_tqdm", [True, False])
-def test_progress_is_shown(has_tqdm, capsys, monkeypatch):
+def test_progress_ends_where_the_run_ends(has_tqdm, until, impacts, end, capsys, monkeypatch):
     if has_tqdm:
         pytest.importorskip("tqdm")
     else:
         monkeypatch.setitem(__import__("sys").modules, "tqdm.auto", None)
-    run = dalembert.models.double_pendulum.simulate(until=2000, samples=0, progress=True)
+    run = Model.from_text(BALL).simulate(until=until, impacts=impacts, samples=0, progress=True)
     shown = capsys.readouterr().err
-    assert run.outcome.t == 2000 and "double_pendulum" in shown and "2000" in shown
+    last = shown.rstrip().splitlines()[-1].rsplit("\r", 1)[-1]
+    assert last.startswith("ball") and f"{end}/{until:g}" in last.replace(" of ", "/"), shown
+    assert f"{run.outcome.t:.6g}" == end
