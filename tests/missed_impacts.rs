@@ -4,11 +4,12 @@
 use core::ops::ControlFlow;
 
 use dalembert::math::larger;
-use dalembert::{Event, Observer, StateVector, System, VectorField};
+use dalembert::{Event, Observer, Outcome, StateVector, System, VectorField};
+use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Setting, every_integrator};
-use dalembert_stability::course::{Course, Random};
+use dalembert_stability::course::{Course, Random, state};
 use dalembert_stability::tables::{RECTANGLE, STADIUM, elliptic_table};
-use dalembert_stability::text::{Model, value};
+use dalembert_stability::text::{Model, Text, value};
 
 /// Allowed rounding error of a time, in units of `2^-52` divided by the gap rate.
 const UNITS: f64 = 256.0;
@@ -257,4 +258,46 @@ fn none_of_ten_thousand_impacts_is_missed() {
 #[ignore = "nightly: ten million impacts"]
 fn none_of_ten_million_impacts_is_missed() {
     follow_all(10_000_000);
+}
+
+/// A point in a corner meets both walls shortly before the end of a step, at times whose distance from it is smaller than
+/// what is joined to the next step. The motion is along straight lines.
+#[test]
+fn two_impacts_at_the_end_of_a_step_lose_no_time() {
+    static CORNER: Text = Text::new(
+        "Corner {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            impacts { one: x <= 0; other: y <= 0; }
+        }",
+    );
+    let corner = CORNER.model();
+    let distances = [4e-7, 1e-8, 2e-9, 1e-9, 3e-12];
+    for &integrator in Integrator::every() {
+        for h in [0.05, 0.25] {
+            for [first, second] in distances
+                .map(|one| distances.map(|other| [one, other]))
+                .concat()
+            {
+                let start = [h * first - 1.0, h * second - 1.0];
+                let state = state(&corner, &start, &[1.0; 2]);
+                let course = Course::from_state(&corner, state, 2.0).step(h);
+                let run = course.observed(integrator, &mut ());
+                let name = integrator.name();
+                assert_eq!(
+                    (run.outcome, run.counters.impacts),
+                    (Outcome::Done, 2),
+                    "{name}"
+                );
+                let q = corner.position(&run.state);
+                for (q, start) in q.as_slice().iter().zip(start) {
+                    let right = -2.0 - start;
+                    assert!(
+                        (q - right).abs() < 1e-12,
+                        "{name}, {h}, {first:e}, {second:e}: {q}, {right}"
+                    );
+                }
+            }
+        }
+    }
 }

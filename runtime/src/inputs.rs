@@ -197,6 +197,16 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
         self.system.state_nearest(t, q, qdot)
     }
 
+    fn state_moved(
+        &self,
+        from: &Self::State,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        self.system.state_moved(from, t, q, qdot)
+    }
+
     fn complete_position(
         &self,
         t: f64,

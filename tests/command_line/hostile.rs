@@ -104,6 +104,14 @@ fn values_that_are_not_accepted() {
         ),
         ("simulate bouncing_ball --set m=", &["--set m"]),
         (
+            "simulate bouncing_ball --set m=1,g",
+            &["--set", "NAME=VALUE,.."],
+        ),
+        (
+            "simulate bouncing_ball --output x_dot=1",
+            &["--output", "another name", "a column `x_dot`"],
+        ),
+        (
             "simulate bouncing_ball --until 1 --initial x=inf",
             &["--initial x", "finite"],
         ),

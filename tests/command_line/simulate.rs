@@ -438,6 +438,14 @@ fn without_a_document_on_it_the_standard_output_has_a_summary() {
 }
 
 #[test]
+fn a_list_of_values_sets_each_of_them() {
+    let one = run("simulate bouncing_ball --until 1 --set m=2,g=3 --json -");
+    let both = run("simulate bouncing_ball --until 1 --set m=2 --set g=3 --json -");
+    assert_eq!(one.exit, Exit::Reached, "{}", one.errors);
+    assert_eq!(one.output, both.output);
+}
+
+#[test]
 fn the_summary_of_a_run_that_ends_early_has_a_reason_and_a_remedy() {
     for (line, lines) in [
         (

@@ -459,3 +459,137 @@ fn a_slide_ends_where_its_transitions_no_longer_count() {
         );
     }
 }
+
+/// The two fields that lead to the line `x = 0` from both sides, with surfaces of the right mode across the line. The
+/// motion slides from `t = 1/2` on, at the mean rate `3/4` of `y`.
+fn sliding(surfaces: &str, transitions: &str) -> Text {
+    let text = format!(
+        "Between {{
+            coordinates {{ x; y; }}
+            modes {{
+                right {{ {surfaces} field {{ dot(x) = -1; dot(y) = 1/2; }} }}
+                left {{ field {{ dot(x) = 1; dot(y) = 1; }} }}
+                away {{ field {{ dot(x) = 0; dot(y) = -1; }} }}
+            }}
+            transitions {{ {transitions} }}
+        }}"
+    );
+    Text::new(text.leak())
+}
+
+/// The motion is the limit of fast switches, so that surfaces of both modes act on it: whichever side it comes from,
+/// and in either order of declaration.
+#[test]
+fn a_sliding_motion_meets_the_surfaces_of_both_modes() {
+    let [go, back, leave] = [
+        "go: right -> left when x <= 0;",
+        "back: left -> right when x >= 0;",
+        "leave: right -> away when y >= 1;",
+    ];
+    // It starts at `y = 0`: the side it comes from determines the rate until it slides.
+    let met = |rate: f64| 0.5 + (1.0 - 0.5 * rate) / 0.75;
+    for (x, rate) in [(0.5, 0.5), (-0.5, 1.0)] {
+        for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Rk4] {
+            let name = integrator.name();
+            let run = |text: &Text, until: f64| {
+                let mut field = text.model();
+                if x < 0.0 {
+                    field.set_mode(1);
+                }
+                let state = state(&field, &[x, 0.0], &[0.0; 2]);
+                let course = Course::from_state(&field, state, until)
+                    .tol(1e-12)
+                    .step(1.0 / 128.0);
+                let run = course.observed(integrator, &mut ());
+                (
+                    run.outcome,
+                    run.t,
+                    field.mode(&run.state),
+                    field.position(&run.state),
+                )
+            };
+            let text = sliding("impacts { top: y <= 1 => stop; }", &[go, back].concat());
+            let (outcome, t, ..) = run(&text, 4.0);
+            assert!(
+                matches!(outcome, Outcome::StoppedAt { .. }),
+                "{name}, {x}: {outcome:?}"
+            );
+            assert!((t - met(rate)).abs() < 1e-9, "{name}, {x}: {t}");
+            for order in [[go, back, leave], [leave, go, back]] {
+                let (outcome, _, mode, q) = run(&sliding("", &order.concat()), met(rate) + 0.5);
+                assert_eq!(
+                    (outcome, mode),
+                    (Outcome::Done, 2),
+                    "{name}, {x}, {order:?}"
+                );
+                assert!(
+                    (q.as_slice()[1] - 0.5).abs() < 1e-9,
+                    "{name}, {x}, {order:?}"
+                );
+            }
+            // It slides on from below, 3/4 in the rest of the time.
+            let reset = "impacts { top: y <= 1 => reset { y = -1; } }";
+            let (outcome, _, _, q) = run(&sliding(reset, &[go, back].concat()), met(rate) + 1.0);
+            assert_eq!(outcome, Outcome::Done, "{name}, {x}");
+            let end = q.as_slice();
+            assert!(
+                end[0].abs() < 1e-9 && (end[1] + 0.25).abs() < 1e-9,
+                "{name}, {x}: {end:?}"
+            );
+        }
+    }
+}
+
+/// A surface that holds the motion when the mode changes, or that the motion meets after that, leaves mode and position as
+/// they are. Nothing acts along `x`.
+#[test]
+fn surfaces_hold_the_motion_in_the_present_mode() {
+    let both: &[f64] = &[1.0 / 8.0, 2.0];
+    for (b, floors, end, heights) in [
+        ("(dot(x)^2 + dot(y)^2)/2 - y", "common", 4.0, both),
+        ("(dot(x)^2 + 4*dot(y)^2)/2 - y", "common", 4.0, &both[..1]),
+        ("(dot(x)^2 + dot(y)^2)/2 - y", "own", 4.0, both),
+        (
+            "(dot(x)^2 + dot(y)^2)/2 - y + x/4",
+            "common",
+            4.0 + 9.0 / 8.0,
+            both,
+        ),
+    ] {
+        let floor = |name: &str| format!("impacts {{ {name}: y >= 0 => impact_plastic; }}");
+        let [common, first, second] = match floors {
+            "common" => [floor("floor"), String::new(), String::new()],
+            _ => [String::new(), floor("one"), floor("two")],
+        };
+        let text = format!(
+            "Held {{
+                coordinates {{ x; y; }}
+                {common}
+                modes {{
+                    a {{ {first} lagrangian = (dot(x)^2 + dot(y)^2)/2 - y; }}
+                    b {{ {second} lagrangian = {b}; }}
+                }}
+                transitions {{ ab: a -> b when x >= 1; }}
+            }}"
+        );
+        let text = Text::new(text.leak());
+        let system = text.model();
+        // It falls onto the floor before the change, and after it.
+        for &height in heights {
+            let state = state(&system, &[0.0, height], &[1.0, 0.0]);
+            for &integrator in Integrator::every() {
+                let name = integrator.name();
+                let course = Course::from_state(&system, state, 4.0).resting();
+                let run = course.tol(1e-11).observed(integrator, &mut ());
+                assert_eq!((run.outcome, run.t), (Outcome::Done, 4.0), "{name}, {b}");
+                assert_eq!(system.mode(&run.state), 1, "{name}, {b}");
+                let q = system.position(&run.state);
+                let q = q.as_slice();
+                assert!(
+                    (q[0] - end).abs() < 1e-8 && q[1].abs() < 1e-8,
+                    "{name}, {b}, {height}: {q:?}"
+                );
+            }
+        }
+    }
+}

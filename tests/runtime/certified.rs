@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::Described;
-use dalembert::certified::CertifiedFlow;
+use dalembert::certified::{CertifiedFlow, CertifiedRun};
 use dalembert::extended::{At, ExtendedSimulation};
 use dalembert::numbers::Interval;
 use dalembert::{StateVector, Variational, VectorField};
@@ -196,4 +196,42 @@ fn a_kink_is_not_stepped_over() {
     // The point passes 0 after a quarter of a period.
     let kink = core::f64::consts::FRAC_PI_2 / (4.0_f64 / 3.0).sqrt();
     assert!(lost.t <= kink && lost.t > 0.99 * kink, "{lost}, {kink}");
+}
+
+/// The rates are finite on both sides of what the motion reaches: the cut of `atan2`, and the end of the domain of a root.
+/// Each text has one coordinate and reaches its place at this time, before the end.
+#[test]
+fn a_jump_and_the_edge_of_a_domain_are_not_stepped_over() {
+    static ACROSS: Text =
+        Text::new("Across { coordinates { x; z; } field { dot(x) = 1; dot(z) = atan2(-x, -1); } }");
+    static IN_TIME: Text = Text::new(
+        "InTime { coordinates { x; z; } field { dot(x) = 1; dot(z) = atan2(sin(t + x), cos(t + x)); } }",
+    );
+    static ROUND: Text = Text::new(
+        "Round { coordinates { x; z; } field { dot(x) = -x; dot(z) = atan2(sin(pi*t), cos(pi*t)) + x; } }",
+    );
+    static EMPTIED: Text =
+        Text::new("Emptied { coordinates { x; z; } field { dot(x) = -2*sqrt(x); dot(z) = 1; } }");
+    let pi = core::f64::consts::PI;
+    for (text, x, at, until) in [
+        (&ACROSS, -1.0, 1.0, 2.0),
+        (&IN_TIME, 0.0, pi / 2.0, 3.0),
+        (&ROUND, 1.0, 1.0, 1.5),
+        (&EMPTIED, 1.0, 1.0, 1.5),
+    ] {
+        let system = text.model();
+        let start = |i: usize| Interval::point([x, 0.0][i]);
+        let mut flow = CertifiedFlow::new(&system, 0.0, start);
+        let lost = certified::flow(&mut flow, until).unwrap_err();
+        assert!(lost.t <= at && lost.t > 0.99 * at, "{lost}, {at}");
+        let mut run = CertifiedRun::new(&system, 0.0, start);
+        let lost = run
+            .run(until, |_| core::ops::ControlFlow::Continue(()))
+            .unwrap_err();
+        assert!(lost.t <= at && lost.t > 0.99 * at, "{lost}, {at}");
+        // Before that, the motion is certified.
+        let mut run = CertifiedRun::new(&system, 0.0, start);
+        run.run(0.99 * at, |_| core::ops::ControlFlow::Continue(()))
+            .unwrap();
+    }
 }

@@ -390,8 +390,13 @@ pub struct RunArgs {
     /// The model.
     #[command(flatten)]
     pub model: ModelArgs,
-    /// Set an input to a constant value; 0 by default. May be repeated.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    /// Set inputs to constant values; 0 by default. May be repeated.
+    #[arg(
+        long,
+        value_name = "NAME=VALUE,..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     pub input: Vec<String>,
     /// The state.
     #[command(flatten)]

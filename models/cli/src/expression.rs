@@ -4,6 +4,8 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+use dalembert::describe::Description;
+
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::names;
@@ -256,14 +258,36 @@ pub fn with_outputs<'m>(
         return Ok(Cow::Borrowed(models));
     }
     let named = named_outputs(flags)?;
+    let entry = find_model(models, model)?;
+    if let Some((name, expression)) = named
+        .iter()
+        .find(|(name, _)| is_column(entry.description(), name))
+    {
+        let given = format!("{name} = {}", expression.text());
+        return Err(CliError::value(
+            "--output",
+            given,
+            format!("another name, such as {name}_2: tables have a column `{name}`"),
+        ));
+    }
     let named: Vec<(String, &Expression)> = named
         .iter()
         .map(|(name, expression)| (name.clone(), expression))
         .collect();
-    Ok(Cow::Owned(vec![add_named(
-        find_model(models, model)?,
-        &named,
-    )?]))
+    Ok(Cow::Owned(vec![add_named(entry, &named)?]))
+}
+
+/// True if tables of runs have a column of this name without any output.
+fn is_column(description: &Description, name: &str) -> bool {
+    ["event", "mode", "energy_error"].contains(&name)
+        || names::coordinates(description).any(|coordinate| {
+            [
+                coordinate.to_owned(),
+                names::velocity(coordinate),
+                names::momentum(coordinate),
+            ]
+            .contains(&name.to_owned())
+        })
 }
 
 /// The model with the expressions as additional outputs after its own, in their order.

@@ -31,19 +31,25 @@ fn value(fact: Fact) -> Value {
     }
 }
 
-/// Lines about a run that did not reach its end, each with a title: the reason, and a remedy if one is known.
-pub fn remarks(description: &Description, outcome: &Outcome) -> Vec<(&'static str, String)> {
+/// Lines about a run that did not reach its end, each with a title: the reason, and a remedy if one is known. With
+/// `rests`, the run had `--rest contact`.
+pub fn remarks(
+    description: &Description,
+    outcome: &Outcome,
+    rests: bool,
+) -> Vec<(&'static str, String)> {
     let reason = outcome::explanation(description, outcome);
-    let remedy = remedy(outcome).map(str::to_owned);
+    let remedy = remedy(outcome, rests).map(str::to_owned);
     [("reason", reason), ("try", remedy)]
         .into_iter()
         .filter_map(|(title, text)| Some((title, text?)))
         .collect()
 }
 
-/// A remedy against the end of a run, in terms of flags and declarations.
-const fn remedy(outcome: &Outcome) -> Option<&'static str> {
+/// A remedy against the end of a run, in terms of flags and declarations. With `rests`, the run had `--rest contact`.
+const fn remedy(outcome: &Outcome, rests: bool) -> Option<&'static str> {
     Some(match outcome {
+        Outcome::Zeno { .. } | Outcome::Contact { .. } if rests => return None,
         Outcome::Zeno { .. } => {
             "--rest contact, which continues along the surface after the accumulation"
         }
@@ -101,7 +107,7 @@ pub fn remarks_on_orbit(
             Some("a larger --until, or a start whose motion reaches the surface"),
         ),
         OrbitError::Section(SectionError::Ended(outcome)) => {
-            return remarks(description, outcome);
+            return remarks(description, outcome, false);
         }
         OrbitError::NotConverged { .. } => (
             "Newton's method did not converge".to_owned(),
@@ -211,8 +217,9 @@ mod tests {
     #[test]
     fn every_end_before_the_end_has_a_remedy() {
         for outcome in OUTCOMES {
-            assert!(remedy(&outcome).is_some(), "{}", outcome.kind());
+            assert!(remedy(&outcome, false).is_some(), "{}", outcome.kind());
         }
-        assert_eq!(remedy(&Outcome::Done), None);
+        assert_eq!(remedy(&Outcome::Done, false), None);
+        assert_eq!(remedy(&Outcome::Contact { surface: 0 }, true), None);
     }
 }

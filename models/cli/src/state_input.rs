@@ -58,7 +58,7 @@ pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, 
 /// # Errors
 /// An unknown name, a value that is not a number or contradicts the declaration.
 pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
-    let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
+    let (name, value) = names::assignment("--set", text, "NAME=VALUE,..")?;
     let parameters = &model.description().parameters;
     let index = names::find(
         "--set",
@@ -86,7 +86,7 @@ pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliErro
 /// # Errors
 /// An unknown input, or a value that is not a number.
 pub fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
-    let (name, value) = names::assignment("--input", text, "NAME=VALUE")?;
+    let (name, value) = names::assignment("--input", text, "NAME=VALUE,..")?;
     let index = names::find("--input", "input", name, model.inputs().iter().copied())?;
     match scalar::parse(value) {
         Ok(number) if number.is_finite() => {

@@ -31,7 +31,8 @@ pub(super) enum Side {
 /// A surface that may be met, with a fraction of the step up to which no surface is met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Met {
-    pub(super) surface: usize,
+    /// The surface; `None` where the motion or its gaps are not enclosed.
+    pub(super) surface: Option<usize>,
     pub(super) reason: Reason,
     pub(super) at: f64,
 }
@@ -183,14 +184,14 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
     }
 
     /// Sides of all surfaces after a part of a step, from those at its start; or a surface that may be met, with the
-    /// reason. The surface `except` is not examined and keeps its side.
+    /// reason; `None` where nothing is enclosed. The surface `except` is not examined and keeps its side.
     pub(super) fn passed_in(
         &self,
         part: Option<Part<Sys::State>>,
         sides: &Sides<Sys>,
         except: Option<usize>,
-    ) -> Result<Sides<Sys>, (usize, Reason)> {
-        let unknown = (0, Reason::NoTube);
+    ) -> Result<Sides<Sys>, (Option<usize>, Reason)> {
+        let unknown = (None, Reason::NoTube);
         let part = part.ok_or(unknown)?;
         let gaps = self.field.gaps(&part).ok_or(unknown)?;
         let mut later = *sides;
@@ -199,7 +200,7 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
                 continue;
             }
             let side = self.side_after(surface, gap, sides[surface], &part);
-            later[surface] = side.map_err(|reason| (surface, reason))?;
+            later[surface] = side.map_err(|reason| (Some(surface), reason))?;
         }
         Ok(later)
     }

@@ -43,7 +43,7 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         let course = Course::new(field, after, &tube, self.times, unit, ORDER);
         let course = course.ok_or(Reason::NoTube)?;
         let passed = self.surfaces.passed_in(course.part(self.rest), sides, None);
-        let sides = passed.map_err(|(other, reason)| match other == surface {
+        let sides = passed.map_err(|(other, reason)| match other == Some(surface) {
             true => Reason::MayStay { surface },
             false => together(surface, other, reason),
         })?;
@@ -90,9 +90,9 @@ pub(super) fn carried<Sys: Variational>(
 }
 
 /// The reason for a refusal if the motion may meet another surface near this impact.
-pub(super) fn together(surface: usize, other: usize, reason: Reason) -> Reason {
-    match reason {
-        Reason::UnsureCondition { .. } => reason,
-        _ => Reason::MayMeetTogether { surface, other },
+pub(super) fn together(surface: usize, other: Option<usize>, reason: Reason) -> Reason {
+    match (reason, other) {
+        (Reason::UnsureCondition { .. }, _) | (_, None) => reason,
+        (_, Some(other)) => Reason::MayMeetTogether { surface, other },
     }
 }

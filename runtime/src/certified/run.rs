@@ -251,10 +251,23 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// The errors of [`CertifiedRun::run`].
     pub fn next_impact(&mut self, t_end: f64) -> Result<Option<CertifiedImpact<Sys>>, Lost> {
         self.begin()?;
+        // Latest end of the next step: before `t_end` where the motion is enclosed over shorter steps only.
+        let mut limit = t_end;
         while self.t() < t_end {
-            let prepared = self.progress.prepare(t_end)?;
+            let prepared = self.progress.prepare(limit)?;
+            let t = self.t();
             match self.watched(&self.progress, &prepared.step) {
-                Ok(sides) => self.progress.make(&prepared, sides),
+                Ok(sides) => {
+                    self.progress.make(&prepared, sides);
+                    limit = t_end;
+                }
+                Err(met) if met.surface.is_none() => {
+                    limit = 0.5 * t + 0.5 * prepared.step.later;
+                    if limit - t < least_step(t) {
+                        let reason = met.reason;
+                        return Err(Lost { t, reason });
+                    }
+                }
                 Err(met) => {
                     let impact = self.meet(&prepared.step, met, t_end);
                     let t = self.t();
@@ -318,7 +331,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         match Course::new(&flow.field, &hull, tube, now, length, ORDER) {
             Some(course) => self.surfaces(flow).passed(&course, &progress.sides),
             None => Err(Met {
-                surface: 0,
+                surface: None,
                 reason: Reason::NoTube,
                 at: 0.0,
             }),
@@ -353,17 +366,19 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
             let Some(near) = self.brought_to(if last { self.t() } else { t }) else {
                 continue;
             };
-            let is_behind = matches!(met.reason, Reason::MayBeBehind { .. });
-            let crossed = match is_behind {
-                true => Err(met.reason),
-                false => self.crossed(&near, met.surface),
+            let crossable = met
+                .surface
+                .filter(|_| !matches!(met.reason, Reason::MayBeBehind { .. }));
+            let crossed = match crossable {
+                None => Err(met.reason),
+                Some(surface) => self.crossed(&near, surface),
             };
             match crossed {
                 Ok((surface, crossed)) => return self.take(near, surface, &crossed, t_end),
                 Err(found) => reason = found,
             }
             nearest.get_or_insert(near);
-            if last || is_behind {
+            if last || crossable.is_none() {
                 break;
             }
         }

@@ -118,15 +118,19 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         changes.is_finite().then_some(changes)
     }
 
-    /// A box that contains every motion from `start` over the time `during`; `None` if none is found. `times`: the
-    /// whole step.
+    /// A box that contains every motion from `start` over the time `during`, and in which the rates are continuously
+    /// differentiable; `None` if none is found. `times`: the whole step.
     pub(super) fn tube(
         &self,
         start: &Bounds<Sys::State>,
         times: Interval,
         during: Interval,
     ) -> Option<Bounds<Sys::State>> {
-        held(start, during, |tube| self.rates(times, tube))
+        let tube = held(start, during, |tube| self.rates(times, tube))?;
+        // Rates may jump although they are finite: across the cut of `atan2` a series goes on as if there were no jump.
+        let steady = Bounds::point(&tube.lo.zeroed());
+        self.changes(times, &tube, &steady)?;
+        Some(tube)
     }
 
     /// A box that contains the derivatives of all motions in `tube` over the time `during`, from the box of directions

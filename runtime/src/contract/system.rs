@@ -209,6 +209,22 @@ pub trait System: VectorField {
         self.state_unchecked(t, q, qdot)
     }
 
+    /// The state in the mode of `from` with these positions, and with the nearest velocities in the metric that satisfy
+    /// the constraints. All other functions that make a state from positions make it in the first mode.
+    ///
+    /// # Errors
+    /// The errors of [`System::state_nearest`].
+    fn state_moved(
+        &self,
+        from: &Self::State,
+        t: f64,
+        q: &Self::Vector,
+        qdot: &Self::Vector,
+    ) -> Result<Self::State, Fault> {
+        let _ = from;
+        self.state_nearest(t, q, qdot)
+    }
+
     /// Completes positions: moves the positions whose `placed` is not 1 so that all positions satisfy the holonomic
     /// constraints. Returns `q` unchanged if there are no such constraints. If every position is placed, only checks
     /// `q`.

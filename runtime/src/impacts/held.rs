@@ -132,7 +132,7 @@ impl<G: StateVector> Held<G> {
         for (q, v) in q.as_mut_slice().iter_mut().zip(qdot.as_slice()) {
             *q += (STEP_ASIDE * q.abs().max(f64::MIN_POSITIVE / f64::EPSILON)).copysign(*v);
         }
-        system.state_nearest(t, &q, &qdot)
+        system.state_moved(state, t, &q, &qdot)
     }
 
     /// Same as [`Held::sizes`], for a known rate without the forces.
@@ -362,7 +362,7 @@ impl<G: StateVector> Held<G> {
         let (qdot, moved) = (system.velocity(t, now.state)?, system.velocity(t, &kicked)?);
         let difference = sum(&moved, -1.0, &qdot);
         let q = sum(&system.position(now.state), 1.0, &difference);
-        *now.state = system.state_nearest(t, &q, &qdot)?;
+        *now.state = system.state_moved(now.state, t, &q, &qdot)?;
         Ok(())
     }
 

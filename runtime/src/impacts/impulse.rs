@@ -241,6 +241,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         observer: &mut O,
     ) -> Result<(), Outcome> {
         let mut rates = self.watch.rates_here(now)?;
+        if let Some(slide) = self.resting.held().slide() {
+            // It is part of the motion.
+            hits.set_done(slide.back);
+        }
         let mut several = hits.approached(&rates) > 1;
         let mut verdict = self.verdict();
         let mut passages = Passages(0);
@@ -576,6 +580,11 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             Ok(hit) => {
                 let end = self.watch.end_of_hold(hit.unwrap_or(1.0), step)?;
                 let first = self.resting.look(hit, end, step)?;
+                if let Some(met) = self.watch.met_across(first.unwrap_or(1.0), step)?
+                    && first.is_none_or(|first| met.0 < first)
+                {
+                    return Ok(Some(self.resting.meet_across(met)));
+                }
                 let kink = self.watch.kink_of_hold(1.0, step)?;
                 // At a kink the force jumps, perhaps through 0: the kink comes first.
                 let is_first = |kink: &f64| match (first, end) {
@@ -630,6 +639,9 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
                 true => Ok(()),
                 false => Err(outcome),
             };
+        }
+        if let Some(surface) = self.resting.take_across() {
+            return self.strike_across(surface, now, observer);
         }
         let held = *self.resting.held();
         self.resting.arrive_at_kink(now)?;

@@ -44,6 +44,8 @@ enum Turn {
     Leave(usize),
     /// The gap of a held surface has passed a kink.
     Kink,
+    /// A sliding motion meets this surface of the other mode.
+    Across(usize),
 }
 
 /// The surfaces that the state rests on.
@@ -135,6 +137,21 @@ impl<G: StateVector> Resting<G> {
         }
     }
 
+    /// Cuts the step at `part`, where a sliding motion meets a surface of the other mode.
+    pub(super) fn meet_across(&mut self, (part, surface): (f64, usize)) -> f64 {
+        self.turn = Turn::Across(surface);
+        part
+    }
+
+    /// The surface of the other mode that a sliding motion meets, if the step was cut there.
+    pub(super) fn take_across(&mut self) -> Option<usize> {
+        let Turn::Across(surface) = self.turn else {
+            return None;
+        };
+        self.turn = Turn::Nothing;
+        Some(surface)
+    }
+
     /// Cuts the step at `part`, where the gap of a held surface has passed a kink: its rate may have jumped, so that the
     /// surface acts anew. A change found later in the step is withdrawn. `rates` are the gap rates before the kink.
     pub(super) fn pass_kink(&mut self, part: f64, rates: Option<G>) -> f64 {
@@ -203,7 +220,7 @@ impl<G: StateVector> Resting<G> {
         observer: &mut O,
     ) -> Result<bool, Outcome> {
         match core::mem::replace(&mut self.turn, Turn::Nothing) {
-            Turn::Nothing | Turn::Kink => return Ok(false),
+            Turn::Nothing | Turn::Kink | Turn::Across(_) => return Ok(false),
             Turn::Leave(surface) => match self.held.slide() {
                 Some(slide) => self.end_slide(slide, surface, now, observer)?,
                 None => self.leave(surface, now, observer)?,
@@ -319,7 +336,7 @@ impl<G: StateVector> Resting<G> {
 
     /// Ends sliding where one of the two modes no longer leads into the surface: the mode that the transition `surface`
     /// leaves. The motion continues in this mode.
-    fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
+    pub(super) fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         slide: Slide,
         surface: usize,

@@ -264,12 +264,18 @@ fn begin<Sys: Impacting, Step: Stepper<Sys>>(
     after: f64,
     step: &StepView<'_, Sys, Step>,
 ) -> Onset {
-    let counts = |part: f64| gap_at(surface, step, part) < 0.0 && is_active(surface, step, part);
+    shortly_before(after, |part| {
+        gap_at(surface, step, part) < 0.0 && is_active(surface, step, part)
+    })
+}
+
+/// The onset of a predicate that holds at the fraction `after` of the step, and not far before.
+pub(super) fn shortly_before(after: f64, holds: impl Fn(f64) -> bool) -> Onset {
     let mut back = (f64::EPSILON * after).max(f64::MIN_POSITIVE);
-    while back < after && counts(after - back) {
+    while back < after && holds(after - back) {
         back *= 4.0;
     }
-    narrowed([(after - back).max(0.0), after], counts)
+    narrowed([(after - back).max(0.0), after], holds)
 }
 
 /// The gap at a fraction of a step.

@@ -10,14 +10,25 @@
 //! transition leaves. Both are negative. The sliding mode ends where one of them is 0, or where one of the transitions
 //! no longer counts; the motion continues in the mode that this transition leaves.
 //!
+//! The motion is the limit of switches between both modes, ever faster. Surfaces of either mode therefore act on it. Those
+//! of the mode of the state are watched as always; for those of the other mode, see `Watch::met_across`.
+//!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 
+use core::cell::RefCell;
+
+use super::hits::Hits;
+use super::impulse::Impacts;
+use super::sides::{about, shortly_before};
+use super::watch::Watch;
 use crate::contract::Impacting;
-use crate::effects::StepView;
+use crate::effects::{Moment, StepView};
 use crate::error::Fault;
-use crate::events::first::narrowed;
+use crate::events::first::{narrowed, onset};
 use crate::integrate::Stepper;
+use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
+use crate::record::Observer;
 use crate::state::StateVector;
 
 /// Two transitions that lead into each other.
@@ -138,5 +149,116 @@ impl Slide {
             *value += step * (other - here);
         }
         Ok(())
+    }
+}
+
+impl<Sys: Impacting> Watch<Sys> {
+    /// The first fraction of the step, up to `reach`, at which a sliding motion meets a surface of the other mode by more
+    /// than rounding errors, and the surface. A surface of both modes is watched in the mode of the state.
+    pub(super) fn met_across<Step: Stepper<Sys>>(
+        &mut self,
+        reach: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<(f64, usize)>, Outcome> {
+        let Some(slide) = self.held.slide() else {
+            return Ok(None);
+        };
+        step.prepare()?;
+        self.path.follow_dense(step);
+        let (t, end) = (step.t_end(), *step.end());
+        let other = slide.across(step.system, t, &end)?;
+        let [here, there] = [&end, &other].map(|state| step.system.gaps(t, state));
+        let mut first = None;
+        for surface in 0..here.count() {
+            if surface == slide.across || here.as_slice()[surface] == there.as_slice()[surface] {
+                continue;
+            }
+            let until = first.map_or(reach, |(part, _)| part);
+            let part = self.first_across((slide, surface), until, &other, step);
+            first = part.map(|part| (part, surface)).or(first);
+        }
+        Ok(first)
+    }
+
+    /// The first fraction of the step, up to `reach`, at which one surface of the other mode is met. `other` is the state
+    /// at the end of the step in that mode.
+    fn first_across<Step: Stepper<Sys>>(
+        &self,
+        (slide, surface): (Slide, usize),
+        reach: f64,
+        other: &Sys::State,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Option<f64> {
+        let system = step.system;
+        // Both states have the same components except for the number of the mode.
+        let end = *step.end();
+        let changed = |i: usize| {
+            let (one, other) = (end.as_slice()[i], other.as_slice()[i]);
+            (one != other).then(|| TaylorModel::steady(Interval::point(other)))
+        };
+        let along = |part: [f64; 2]| {
+            let component = |i: usize| changed(i).unwrap_or_else(|| self.path.component(i, part));
+            system.gap_along(surface, self.path.time_model(part), &component)
+        };
+        let floor = {
+            let sizes = self.sizes.as_slice();
+            let rounded =
+                |i: usize| changed(i).unwrap_or_else(|| about(end.as_slice()[i], sizes[i]));
+            let time = about(step.t_end(), step.t_end());
+            system.gap_along(surface, time, &rounded).range().width()
+        };
+        let is_behind = |part: f64, floor: f64, step: &StepView<'_, Sys, Step>| {
+            let (t, state) = (step.time(part), step.state(part));
+            slide.across(system, t, &state).is_ok_and(|other| {
+                system.gaps(t, &other).as_slice()[surface] < -floor
+                    && system.surface_active(surface, t, &other)
+            })
+        };
+        if is_behind(0.0, floor, step) {
+            return None;
+        }
+        let step = RefCell::new(step);
+        let is_clear = |part| {
+            step.borrow_mut().counters.enclosures += 1;
+            along(part).range().lo >= -floor
+        };
+        let found = onset(reach, is_clear, |part| {
+            is_behind(part, floor, &step.borrow())
+        })?;
+        Some(shortly_before(found.after, |part| is_behind(part, 0.0, &step.borrow())).after)
+    }
+}
+
+impl<Sys: Impacting> Impacts<Sys> {
+    /// The impact of a sliding motion on a surface of the other mode. Afterwards the motion slides on if both modes still
+    /// lead into each other.
+    pub(super) fn strike_across<O: Observer<Sys>>(
+        &mut self,
+        surface: usize,
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        let Some(slide) = self.resting.held().slide() else {
+            return Ok(());
+        };
+        self.resting.end_slide(slide, slide.across, now, observer)?;
+        self.watch.hold(self.resting.held());
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        if rates.as_slice()[surface] >= 0.0 {
+            // Only the other mode leads there, in which the surface does not act.
+            return Err(Outcome::Ambiguous {
+                surfaces: [surface, slide.across],
+            });
+        }
+        let arrived = *now.state;
+        let hits = |surface: usize| Hits::all_of(core::iter::once(surface), &rates);
+        self.strike(hits(surface), now, observer)?;
+        let positions = [&arrived, now.state].map(|state| now.system.position(state));
+        match positions[0] == positions[1]
+            && now.system.mode(&arrived) == now.system.mode(now.state)
+        {
+            true => self.strike(hits(slide.across), now, observer),
+            false => Ok(()),
+        }
     }
 }

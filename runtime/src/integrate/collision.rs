@@ -65,7 +65,9 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     let whole = *step;
     let (h, end) = (whole.made, whole.ends.t[1]);
     let start = whole.ends.t[0];
-    if whole.pending.is_none() {
+    // The point of the grid that is reached by the rest of the step: its end, or the end of an earlier step that was cut.
+    let target = whole.target.unwrap_or(end);
+    if whole.pending != Some(target) {
         step.span = h;
     }
     let mut trial = |step: &mut FixedStep<F::State, M>, length: f64| {
@@ -98,8 +100,7 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     step.ends.t[1] = start.after(length);
     step.is_crowded |= whole.pending.is_some();
     (step.made, step.dense_ready) = (length, false);
-    // The remainder of the step ends where the whole step would have ended.
-    (step.has_met, step.target) = (true, whole.pending.or(Some(end)));
+    (step.has_met, step.target) = (true, Some(target));
     step.prepare_dense(field, counters).is_ok() || {
         *step = whole;
         false

@@ -216,6 +216,17 @@ impl<S: Declared> System for S {
         }
     }
 
+    fn state_moved(
+        &self,
+        from: &S::State,
+        t: f64,
+        q: &S::Vector,
+        qdot: &S::Vector,
+    ) -> Result<S::State, Fault> {
+        let here = Part::of(self, from.as_slice()).starting_here();
+        here.state_nearest(t, q, qdot)
+    }
+
     #[inline]
     fn energy(&self, t: f64, state: &S::State) -> Result<f64, Fault> {
         let part = Part::of(self, state.as_slice());

@@ -28,10 +28,11 @@ pub struct CheckArgs {
     /// Exit status 0 if all hypotheses are proved.
     #[arg(long, conflicts_with = "certificate")]
     pub bendixson: bool,
-    /// Set a parameter, for --bendixson. May be repeated.
+    /// Set parameters, for --bendixson. May be repeated.
     #[arg(
         long,
-        value_name = "NAME=VALUE",
+        value_name = "NAME=VALUE,..",
+        value_delimiter = ',',
         allow_hyphen_values = true,
         requires = "bendixson"
     )]

@@ -38,8 +38,13 @@ pub struct ModelArgs {
     /// Scene, a selection of forces and surfaces. `list --format json` prints the scenes.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
-    /// Set a parameter. May be repeated.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    /// Set parameters. May be repeated.
+    #[arg(
+        long,
+        value_name = "NAME=VALUE,..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     pub set: Vec<String>,
     /// Feedback laws of inputs.
     #[command(flatten)]

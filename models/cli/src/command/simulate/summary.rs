@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use dalembert::Outcome;
 use dalembert::describe::Description;
 use dalembert::law::Law;
+use dalembert::policy::Rest;
 use dalembert_driver::accuracy::Verified;
 use dalembert_driver::{Ending, Settings};
 
@@ -25,7 +26,8 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     let description = finished.model.description();
     writeln!(output, "  outcome     {}", ended(description, ending))?;
     if !ending.reached {
-        for (title, text) in outcome::remarks(description, &ending.outcome) {
+        let rests = settings.policies.rest == Rest::Contact;
+        for (title, text) in outcome::remarks(description, &ending.outcome, rests) {
             writeln!(output, "  {title:<10}  {text}")?;
         }
     }
