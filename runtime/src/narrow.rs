@@ -38,6 +38,9 @@ const DEPTH_OF_FIXED: u32 = 3;
 /// Shortest step that is examined, as a fraction of its time. Times inside a shorter step cannot be distinguished.
 const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
 
+/// Bound for the rounding error of a step, relative to the size of a component.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// Allowed excess of an enclosure over the rates of the step, relative to the change of these rates over the step.
 const OF_CHANGE: f64 = 1.0;
 /// Allowed further excess, relative to the size of these rates.
@@ -100,7 +103,7 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     Ok(0.0)
 }
 
-/// The error allowed in each component.
+/// The error allowed in each component: that of the tolerance, or the rounding error of a step if that is larger.
 fn allowed<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     path: &Path<Sys::State>,
@@ -109,7 +112,8 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
     let mut allowed = step.system.scale(step.t_start(), step.start());
     for (i, entry) in allowed.as_mut_slice().iter_mut().enumerate() {
         let size = path.range(i).magnitude();
-        *entry = tolerance.absolute() * *entry + tolerance.relative() * size;
+        let tolerated = tolerance.absolute() * *entry + tolerance.relative() * size;
+        *entry = tolerated.max(ROUNDING * size);
     }
     allowed
 }

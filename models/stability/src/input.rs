@@ -3,9 +3,10 @@
 use core::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use dalembert::integrate::Chosen;
 use dalembert::{
-    Dop853, Event, EventLog, Instance, Observer, Outcome, Scene, Segment, Simulation, StartError,
-    StateError, StateVector, System, Tolerance, VectorField,
+    Dop853, Event, EventLog, Instance, Observer, Outcome, Run as Ran, Scene, Segment, Simulation,
+    StartError, StateError, StateVector, System, Tolerance, VectorField,
 };
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
@@ -106,8 +107,18 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn stepper<S: StateVector>() -> Dop853<S> {
-    Dop853::new(Tolerance::new(1e-12).expect("a tolerance"))
+type State = <Model as VectorField>::State;
+
+/// A run of the ball over these times.
+fn run(
+    ball: &Model,
+    [t0, t_end]: [f64; 2],
+    state: State,
+    observer: &mut dyn Observer<Model>,
+) -> Result<Ran<State>, StartError> {
+    let mut stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let stepper = Chosen::new(&mut stepper);
+    Simulation::new(ball, stepper, ball.effects()).run(t0, state, t_end, &mut { observer })
 }
 
 fn not_finite(report: &mut Report) {
@@ -122,7 +133,7 @@ fn not_finite(report: &mut Report) {
         let state = ball
             .state_unchecked(0.0, &vector(&[1.0]), &vector(&[value]))
             .expect("a state");
-        let run = Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 1.0, &mut ());
+        let run = run(&ball, [0.0, 1.0], state, &mut ());
         report.equal(
             format!("velocity {value}"),
             run.map(|run| run.outcome.kind()).ok(),
@@ -131,13 +142,8 @@ fn not_finite(report: &mut Report) {
         let good = ball
             .state(0.0, &vector(&[1.0]), &vector(&[0.0]))
             .expect("a state");
-        for times in [(value, 1.0), (0.0, value)] {
-            let run = Simulation::new(&ball, stepper(), ball.effects()).run(
-                times.0,
-                good,
-                times.1,
-                &mut (),
-            );
+        for times in [[value, 1.0], [0.0, value]] {
+            let run = run(&ball, times, good, &mut ());
             report.equal(
                 format!("times {times:?}"),
                 matches!(run, Err(StartError::Times { .. })),
@@ -157,9 +163,7 @@ fn bad_parameters(report: &mut Report) {
         };
         report.equal(format!("m = {m}"), name, "m");
         let state = ball.state_unchecked(0.0, &vector(&[1.0]), &vector(&[0.0]));
-        let run = state.map(|state| {
-            Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 1.0, &mut ())
-        });
+        let run = state.map(|state| run(&ball, [0.0, 1.0], state, &mut ()));
         report.equal(
             format!("run, m = {m}"),
             matches!(run, Ok(Err(StartError::Parameter(_))) | Err(_)),
@@ -173,8 +177,7 @@ fn backwards(report: &mut Report) {
     let state = ball
         .state(0.0, &vector(&[1.0]), &vector(&[0.0]))
         .expect("a state");
-    let run =
-        |t_end| Simulation::new(&ball, stepper(), ball.effects()).run(1.0, state, t_end, &mut ());
+    let run = |t_end| run(&ball, [1.0, t_end], state, &mut ());
     report.equal(
         "backwards",
         run(0.5).err(),
@@ -237,8 +240,8 @@ fn small_log(report: &mut Report) {
     let state = ball
         .state(0.0, &vector(&[0.0]), &vector(&[1.0]))
         .expect("a state");
-    let mut log = EventLog::<<Model as VectorField>::State, 2>::new();
-    let run = Simulation::new(&ball, stepper(), ball.effects()).run(0.0, state, 11.0, &mut log);
+    let mut log = EventLog::<State, 2>::new();
+    let run = run(&ball, [0.0, 11.0], state, &mut log);
     report.equal(
         "outcome",
         run.map(|run| run.outcome).ok(),
@@ -276,41 +279,27 @@ fn observers(report: &mut Report) {
     let state = ball
         .state(0.0, &vector(&[0.0]), &vector(&[1.0]))
         .expect("a state");
-    let mut simulation = Simulation::new(&ball, stepper(), ball.effects());
-    let untouched = simulation.run(0.0, state, 11.0, &mut ());
-    let stopped = simulation.run(
-        0.0,
-        state,
-        11.0,
-        &mut Fails {
-            left: 2,
-            panics: false,
-        },
-    );
+    let mut stepper = Dop853::new(Tolerance::new(1e-12).expect("a tolerance"));
+    let stepper = Chosen::new(&mut stepper);
+    let mut simulation = Simulation::new(&ball, stepper, ball.effects());
+    let mut run =
+        |observer: &mut dyn Observer<Model>| simulation.run(0.0, state, 11.0, &mut { observer });
+    let untouched = run(&mut ());
+    let stopped = run(&mut Fails {
+        left: 2,
+        panics: false,
+    });
     let end = stopped.map(|run| (run.outcome, run.counters.impacts)).ok();
     report.equal("stopped", end, Some((Outcome::Stopped, 2)));
-    report.equal(
-        "after a stop",
-        simulation.run(0.0, state, 11.0, &mut ()),
-        untouched,
-    );
+    report.equal("after a stop", run(&mut ()), untouched);
     let panicked = catch_unwind(AssertUnwindSafe(|| {
-        simulation.run(
-            0.0,
-            state,
-            11.0,
-            &mut Fails {
-                left: 2,
-                panics: true,
-            },
-        )
+        run(&mut Fails {
+            left: 2,
+            panics: true,
+        })
     }));
     report.equal("panicked", panicked.is_err(), true);
-    report.equal(
-        "after a panic",
-        simulation.run(0.0, state, 11.0, &mut ()),
-        untouched,
-    );
+    report.equal("after a panic", run(&mut ()), untouched);
 }
 
 /// Observer that stops the run after a number of steps and keeps the last state.

@@ -1,5 +1,6 @@
 //! First variations: two-form and volume (section F); saltation matrices, traces and grazing impacts (section G).
 
+use dalembert::integrate::Chosen;
 use dalembert::math::larger;
 use dalembert::variations::Section;
 use dalembert::{
@@ -115,7 +116,8 @@ fn vary(
     mut columns: Vec<Tangent<Model>>,
 ) -> Option<Varied> {
     let state = system.state(0.0, &vector(q), &vector(qdot)).ok()?;
-    let stepper = Taylor::new(Tolerance::new(1e-15).ok()?);
+    let mut stepper = Taylor::new(Tolerance::new(1e-15).ok()?);
+    let stepper = Chosen::new(&mut stepper);
     let mut effects = system.effects();
     effects.set_impact_budget(impacts);
     let mut variations = Variations::new(system, &mut columns);

@@ -107,6 +107,11 @@ impl<G: StateVector> Accumulation<G> {
         self.passing.has_accumulated(surface, t)
     }
 
+    /// True if the motion passed through this surface at the time `t`.
+    pub(super) fn has_passed_at(&self, surface: usize, t: f64) -> bool {
+        self.passing.has_passed_at(surface, t)
+    }
+
     /// The time of accumulation of a motion that bounced off a surface at `t` but did not rise from it, because the hop
     /// is too small to be resolved. `None` if it did not bounce.
     pub(super) fn ends_at(&self, surface: usize, t: f64) -> Option<f64> {

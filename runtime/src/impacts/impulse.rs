@@ -198,6 +198,11 @@ impl<Sys: Impacting> Impacts<Sys> {
         if is_map && self.accumulation.has_passed_on(surface, t) {
             return Err(Outcome::Zeno { t, surface });
         }
+        if law == Law::Transition && !self.accumulation.has_passed_at(surface, t) {
+            // It begins to count where the motion is on it.
+            self.watch.cut_at(surface, 0.0, step.length());
+            return Ok(Some(0.0));
+        }
         // After a bounce: the hops have become too small to rise from the surface.
         let accumulation = self.accumulation.ends_at(surface, t);
         match (self.may_rest(surface), accumulation) {

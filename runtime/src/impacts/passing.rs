@@ -47,6 +47,11 @@ impl<G: StateVector> Passing<G> {
         self.stretch = stretch;
     }
 
+    /// True if the motion passed through this surface at the time `t`.
+    pub(super) fn has_passed_at(&self, surface: usize, t: f64) -> bool {
+        self.on_each[surface] == Some(t)
+    }
+
     /// True if impacts followed each other faster and faster until `t`, where two of them cannot be distinguished, and
     /// one of the last was on this surface.
     pub(super) fn has_accumulated(&self, surface: usize, t: f64) -> bool {

@@ -24,7 +24,7 @@ pub(super) const UNITS: f64 = 32.0 * f64::EPSILON;
 
 impl<Sys: Impacting> Watch<Sys> {
     /// Proposes to cut the step where a surface first begins to count while the motion is behind it, if this precedes
-    /// the present proposal.
+    /// the present proposal. A motion that is on the surface at that time, within rounding, hits it.
     pub(super) fn look_behind<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -32,9 +32,12 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in 0..self.gaps.count() {
             let reach = self.proposed.unwrap_or(1.0);
             if self.may_be_behind(surface)
-                && let Some(found) = self.begins_to_count(surface, reach, step)?
+                && let Some((found, rounding)) = self.begins_to_count(surface, reach, step)?
             {
-                self.cut_behind(surface, found, step);
+                match gap_at(surface, step, found.after) >= -rounding {
+                    true => self.cut_at(surface, found.after, step.length()),
+                    false => self.cut_behind(surface, found, step),
+                }
             }
         }
         Ok(())
@@ -57,6 +60,14 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
+    /// Proposes an impact on a surface at this fraction of a step of this length.
+    pub(super) fn cut_at(&mut self, surface: usize, part: f64, length: f64) {
+        self.length = length;
+        self.parts.fill(None);
+        self.parts[surface] = Some(part);
+        (self.proposed, self.behind) = (Some(part), None);
+    }
+
     fn cut_behind<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -69,13 +80,13 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 
     /// The first fraction of the step up to `reach` at which the gap is negative and the surface counts, both beyond
-    /// rounding.
+    /// rounding, and the rounding error of the gap.
     fn begins_to_count<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
         reach: f64,
         step: &mut StepView<'_, Sys, Step>,
-    ) -> Result<Option<Onset>, Outcome> {
+    ) -> Result<Option<(Onset, f64)>, Outcome> {
         self.path.enclose();
         if self.is_free([0.0, reach], (surface, 0.0), step) {
             return Ok(None);
@@ -89,7 +100,8 @@ impl<Sys: Impacting> Watch<Sys> {
             true => gap_at(surface, step, 0.0).min(0.0),
             false => 0.0,
         };
-        let floor = (2.0 * rounding + drift).max(-4.0 * first);
+        let rounding = 2.0 * rounding + drift;
+        let floor = rounding.max(-4.0 * first);
         let step = RefCell::new(step);
         let counts = |part: f64| {
             let step = &mut *step.borrow_mut();
@@ -107,7 +119,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let is_free = |part| self.is_free(part, (surface, floor), &mut step.borrow_mut());
         let found = onset(reach, is_free, counts);
         let step = &**step.borrow();
-        Ok(found.map(|found| begin(surface, found.after, step)))
+        Ok(found.map(|found| (begin(surface, found.after, step), rounding)))
     }
 
     /// True if the gap is certainly nowhere below `-floor` on a part of the step, or if the surface counts nowhere on
