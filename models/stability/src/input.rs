@@ -133,10 +133,10 @@ fn not_finite(report: &mut Report) {
         let state = ball
             .state_unchecked(0.0, &vector(&[1.0]), &vector(&[value]))
             .expect("a state");
-        let run = run(&ball, [0.0, 1.0], state, &mut ());
+        let ended = run(&ball, [0.0, 1.0], state, &mut ());
         report.equal(
             format!("velocity {value}"),
-            run.map(|run| run.outcome.kind()).ok(),
+            ended.map(|run| run.outcome.kind()).ok(),
             Some("non_finite"),
         );
         let good = ball
