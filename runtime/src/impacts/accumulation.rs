@@ -107,7 +107,7 @@ impl<G: StateVector> Accumulation<G> {
         self.passing.has_accumulated(surface, t)
     }
 
-    /// True if the motion passed through this surface at the time `t`.
+    /// True if the motion passed through this surface at the time `t` or just before; see [`Passing::has_passed_at`].
     pub(super) fn has_passed_at(&self, surface: usize, t: f64) -> bool {
         self.passing.has_passed_at(surface, t)
     }

@@ -198,8 +198,10 @@ impl<Sys: Impacting> Impacts<Sys> {
         if is_map && self.accumulation.has_passed_on(surface, t) {
             return Err(Outcome::Zeno { t, surface });
         }
-        if law == Law::Transition && !self.accumulation.has_passed_at(surface, t) {
+        let is_held = self.resting.held().is_held(surface);
+        if law == Law::Transition && !is_held && !self.accumulation.has_passed_at(surface, t) {
             // It begins to count where the motion is on it.
+            self.resting.count(surface, t)?;
             self.watch.cut_at(surface, 0.0, step.length());
             return Ok(Some(0.0));
         }
@@ -246,7 +248,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         observer: &mut O,
     ) -> Result<(), Outcome> {
         let mut rates = self.watch.rates_here(now)?;
-        if let Some(slide) = self.resting.held().slide() {
+        if let Some(slide) = self.resting.held().slide()
+            && !slide.meets_another(now.system, &hits)
+        {
             // It is part of the motion.
             hits.set_done(slide.back);
         }

@@ -7,6 +7,9 @@ use crate::state::StateVector;
 /// Relative difference below which times cannot be distinguished.
 const INSTANT: f64 = 4.0 * f64::EPSILON;
 
+/// Time, in units of [`INSTANT`], within which a passage through the same surface is not repeated at the start of a step.
+const AT_ONCE: f64 = 16.0;
+
 /// The impacts at which the motion passed through a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passing<G: StateVector> {
@@ -47,9 +50,10 @@ impl<G: StateVector> Passing<G> {
         self.stretch = stretch;
     }
 
-    /// True if the motion passed through this surface at the time `t`.
+    /// True if the motion passed through this surface at the time `t`, or so shortly before that a motion which moves on by
+    /// rounding errors of the time would return to it again and again.
     pub(super) fn has_passed_at(&self, surface: usize, t: f64) -> bool {
-        self.on_each[surface] == Some(t)
+        self.on_each[surface].is_some_and(|last| t - last <= AT_ONCE * INSTANT * t.abs())
     }
 
     /// True if impacts followed each other faster and faster until `t`, where two of them cannot be distinguished, and

@@ -104,7 +104,7 @@ impl<G: StateVector> Resting<G> {
     }
 
     /// Counts a change of surfaces. Ends the run if changes repeat too often at one time.
-    fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
+    pub(super) fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
         if self.changes.add(t) > CHANGES * (self.accumulated.count() as u32 + 1) {
             return Err(Outcome::Contact { surface });
         }

@@ -49,6 +49,21 @@ struct Sides<Sys: Impacting> {
 }
 
 impl Slide {
+    /// True if a surface at hand is another one that modes on both sides lead to. Where two such surfaces cross, the order
+    /// of the transitions decides.
+    pub(super) fn meets_another<Sys: Impacting>(
+        self,
+        system: &Sys,
+        hits: &Hits<Sys::Gaps>,
+    ) -> bool {
+        (0..hits.count()).any(|surface| {
+            surface != self.back
+                && surface != self.across
+                && hits.is_at_hand(surface)
+                && system.opposite(surface).is_some()
+        })
+    }
+
     /// The state in the other mode.
     pub(super) fn across<Sys: Impacting>(
         self,
