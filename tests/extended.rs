@@ -214,13 +214,13 @@ fn a_wall_that_moves_is_met_at_its_time() {
 fn a_run_goes_on_from_its_end() {
     let table = Sinai {};
     let at: [&[f64]; 2] = [&[0.7, 0.1], &[0.6, 0.8]];
-    let (whole, _) = run::<_, 2>(&table, at, 12.0);
-    let (half, _) = run::<_, 2>(&table, at, 5.5);
+    let (whole, _) = run::<_, 3>(&table, at, 12.0);
+    let (half, _) = run::<_, 3>(&table, at, 5.5);
     let rest = ExtendedSimulation::new(&table, table.effects())
         .run(half.end, 12.0, |_| ControlFlow::Continue(()));
     let rest = rest.expect("a start");
     for (one, other) in rest.end.state.iter().zip(&whole.end.state) {
-        assert_near("state", *one, *other, 1e-24);
+        assert_near("state", *one, *other, 1e-40);
     }
 }
 
@@ -228,7 +228,7 @@ fn a_run_goes_on_from_its_end() {
 fn what_rounding_decides_ends_a_run() {
     let table = Sinai {};
     // The point passes the disk within the rounding error of its gap.
-    let (end, _) = run::<_, 2>(&table, [&[0.5, -0.9], &[0.0, 1.0]], 1.5);
+    let (end, _) = run::<_, 3>(&table, [&[0.5, -0.9], &[0.0, 1.0]], 1.5);
     assert!(
         matches!(end.outcome, Err(Undefined::Graze { surface: 4, .. })),
         "{:?}",
@@ -237,7 +237,7 @@ fn what_rounding_decides_ends_a_run() {
     // The step with the graze is not made.
     assert!(end.end.t.nearest() < 0.9, "{}", end.end.t);
     // The point runs into a corner.
-    let (end, impacts) = run::<_, 2>(&table, [&[0.75, 0.75], &[1.0, 1.0]], 3.0);
+    let (end, impacts) = run::<_, 3>(&table, [&[0.75, 0.75], &[1.0, 1.0]], 3.0);
     assert!(
         matches!(end.outcome, Err(Undefined::Corner { .. })),
         "{:?}",
@@ -269,7 +269,7 @@ fn a_surface_that_holds_the_motion_ends_a_run() {
     let mut effects = ball.effects();
     effects.set_law(0, Law::ImpactPlastic);
     let end = |effects: <Elastic as Scene>::Effects| {
-        ExtendedSimulation::<_, _, 2>::new(&ball, effects)
+        ExtendedSimulation::<_, _, 3>::new(&ball, effects)
             .run(At::of(0.0, &state), 3.0, |_| ControlFlow::Continue(()))
             .expect("a start")
     };
@@ -279,7 +279,7 @@ fn a_surface_that_holds_the_motion_ends_a_run() {
         "time",
         pressed.end.t,
         Numbers::sqrt(Extended::from(2.0)),
-        1e-30,
+        1e-45,
     );
     effects.set_policies(Policies {
         rest: Rest::Contact,

@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::Described;
-use dalembert::certified::{CertifiedFlow, CertifiedRun};
+use dalembert::certified::{CertifiedFlow, CertifiedRun, Reason};
 use dalembert::extended::{At, ExtendedSimulation};
 use dalembert::numbers::Interval;
 use dalembert::{StateVector, Variational, VectorField};
@@ -234,4 +234,16 @@ fn a_jump_and_the_edge_of_a_domain_are_not_stepped_over() {
         run.run(0.99 * at, |_| core::ops::ControlFlow::Continue(()))
             .unwrap();
     }
+}
+
+/// Before `x = 0` the rate tends to -1, but its derivatives do not: steps become as short as the square of the distance.
+#[test]
+fn a_certification_that_makes_no_headway_ends() {
+    static ESSENTIAL: Text =
+        Text::new("Essential { coordinates { x; z; } field { dot(x) = 1; dot(z) = tanh(1/x); } }");
+    let system = ESSENTIAL.model();
+    let mut flow = CertifiedFlow::new(&system, 0.0, |i| Interval::point([-1.0, 0.0][i]));
+    let lost = flow.run(2.0).unwrap_err();
+    assert_eq!(lost.reason, Reason::NoHeadway);
+    assert!(lost.t < 1.0 && lost.t > 0.99, "{lost}");
 }

@@ -4,6 +4,7 @@
 //! row and after the last one.
 
 use std::cell::Cell;
+use std::ops::Range;
 use std::path::Path;
 
 use clap::ValueEnum;
@@ -21,7 +22,7 @@ const CUBIC: usize = 4;
 /// Interpolation of the inputs between two rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Between {
-    /// Cubic through four rows, two on each side where they exist; rows beyond a jump are not used.
+    /// Cubic through the four nearest rows, two on each side except near the ends; rows beyond a jump are not used.
     Cubic,
     /// Line through the rows before and after.
     Linear,
@@ -29,18 +30,14 @@ pub enum Between {
     Held,
 }
 
-/// Rows without a jump between them.
-#[derive(Debug, Clone, Default)]
-struct Piece {
-    t: Vec<f64>,
-    /// The inputs of each row, in the order of the columns.
-    rows: Vec<Vec<f64>>,
-}
-
 /// Inputs as functions of time.
 #[derive(Debug, Clone)]
 pub struct InputTable {
-    pieces: Vec<Piece>,
+    t: Vec<f64>,
+    /// The inputs of each row, in the order of the columns.
+    rows: Vec<Vec<f64>>,
+    /// The rows that are interpolated before the first time, between two times, and after the last.
+    pieces: Vec<Range<usize>>,
     /// The times at which pieces meet, in order.
     ends: Vec<f64>,
     /// The index of the input of each column.
@@ -74,6 +71,9 @@ impl InputTable {
         let header = reader.headers().map_err(|error| error.to_string())?.clone();
         let time = header.iter().position(|name| name == "t");
         let time = time.ok_or("there is no column `t`")?;
+        if header.iter().skip(time + 1).any(|name| name == "t") {
+            return Err("two columns are called `t`".to_owned());
+        }
         let inputs = model.inputs();
         let mut columns = Vec::new();
         for (place, name) in header.iter().enumerate() {
@@ -89,7 +89,7 @@ impl InputTable {
             let accepted = inputs.join(", ");
             return Err(format!("no column is an input of the model: {accepted}"));
         }
-        let mut rows: Vec<(f64, Vec<f64>)> = Vec::new();
+        let (mut times, mut rows) = (Vec::new(), Vec::new());
         for record in reader.records() {
             let record = record.map_err(|error| error.to_string())?;
             let line = record.position().map_or(0, csv::Position::line);
@@ -99,72 +99,30 @@ impl InputTable {
                 value.ok_or_else(|| format!("line {line}: `{text}` is no number"))
             };
             let t = number(time)?;
-            if rows.last().is_some_and(|(last, _)| t < *last) {
+            if times.last().is_some_and(|last| t < *last) {
                 return Err(format!("line {line}: the time decreases to {t}"));
             }
             if rows.len() == MOST_ROWS {
                 return Err(format!("there are more than {MOST_ROWS} rows"));
             }
             let values = columns.iter().map(|&(place, _)| number(place));
-            rows.push((t, values.collect::<Result<_, _>>()?));
+            rows.push(values.collect::<Result<_, _>>()?);
+            times.push(t);
         }
         if rows.is_empty() {
             return Err("there are no rows".to_owned());
         }
         let after = model.description().parameters.len();
         let constant = (0..inputs.len()).map(|index| model.parameter(after + index));
-        let mut table = Self {
-            pieces: Vec::new(),
-            ends: Vec::new(),
+        let (pieces, ends) = pieces(&times, between);
+        Ok(Self {
+            t: times,
+            rows,
+            pieces,
+            ends,
             columns: columns.into_iter().map(|(_, input)| input).collect(),
             constant: constant.collect(),
-        };
-        table.cut(rows, between);
-        Ok(table)
-    }
-
-    /// Divides the rows into pieces: at jumps and, for linear or constant inputs, at every row.
-    fn cut(&mut self, rows: Vec<(f64, Vec<f64>)>, between: Between) {
-        let held = |t: f64, values: &[f64]| Piece {
-            t: vec![t],
-            rows: vec![values.to_vec()],
-        };
-        let (first, last) = (rows[0].clone(), rows[rows.len() - 1].clone());
-        self.pieces.push(held(first.0, &first.1));
-        self.ends.push(first.0);
-        let mut open = Piece::default();
-        for (t, values) in rows {
-            let is_jump = open.t.last() == Some(&t);
-            let is_cut = match between {
-                Between::Cubic => is_jump,
-                Between::Linear => open.t.len() > 1 || is_jump,
-                Between::Held => !open.t.is_empty(),
-            };
-            if is_cut {
-                let end = match between {
-                    Between::Held => t,
-                    _ => open.t[open.t.len() - 1],
-                };
-                let next = match (between, is_jump) {
-                    // The line that ends at this row begins at the row before.
-                    (Between::Linear, false) => {
-                        let row = open.rows[open.rows.len() - 1].clone();
-                        Piece {
-                            t: vec![end],
-                            rows: vec![row],
-                        }
-                    }
-                    _ => Piece::default(),
-                };
-                self.pieces.push(std::mem::replace(&mut open, next));
-                self.ends.push(end);
-            }
-            open.t.push(t);
-            open.rows.push(values);
-        }
-        self.pieces.push(open);
-        self.ends.push(last.0);
-        self.pieces.push(held(last.0, &last.1));
+        })
     }
 
     /// True if an input has a column.
@@ -178,9 +136,9 @@ impl InputTable {
         let Some(piece) = self.pieces.get(piece) else {
             return values;
         };
-        let (first, weights) = piece.weights(t);
+        let weights = weights(&self.t[piece.clone()], t);
         for (column, &input) in self.columns.iter().enumerate() {
-            let rows = piece.rows[first..].iter().zip(&weights);
+            let rows = self.rows[piece.clone()].iter().zip(&weights);
             values[input] = rows.map(|(row, weight)| weight * row[column]).sum();
         }
         values
@@ -212,22 +170,42 @@ impl InputTable {
     }
 }
 
-impl Piece {
-    /// The index of the first row that is interpolated at a time, and the weights of the rows from there on (Lagrange
-    /// interpolation).
-    fn weights(&self, t: f64) -> (usize, Vec<f64>) {
-        let count = self.t.len().min(CUBIC);
-        let before = self.t.partition_point(|row| *row <= t);
-        let first = before.saturating_sub(CUBIC / 2).min(self.t.len() - count);
-        let nodes = &self.t[first..first + count];
-        let weight = |i: usize| -> f64 {
-            let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
-            others
-                .map(|(_, node)| (t - node) / (nodes[i] - node))
-                .product()
+/// The rows that are interpolated before the first time, between two times, and after the last, and the times at which
+/// these pieces meet. Cubics too have a kink where they meet, so that no step passes a row.
+fn pieces(t: &[f64], between: Between) -> (Vec<Range<usize>>, Vec<f64>) {
+    let constant = |row: usize| row..row + 1;
+    let (mut pieces, mut ends) = (vec![constant(0)], vec![t[0]]);
+    let mut start = 0;
+    // Rows without a jump between them.
+    for smooth in t.chunk_by(|before, after| before != after) {
+        let end = start + smooth.len();
+        let count = match between {
+            Between::Cubic => CUBIC.min(smooth.len()),
+            Between::Linear => 2,
+            Between::Held => 1,
         };
-        (first, (0..count).map(weight).collect())
+        for after in start + 1..end {
+            // As many rows on each side, if there are as many.
+            let first = after.saturating_sub(count.div_ceil(2));
+            let first = first.clamp(start, end - count);
+            pieces.push(first..first + count);
+            ends.push(t[after]);
+        }
+        start = end;
     }
+    pieces.push(constant(t.len() - 1));
+    (pieces, ends)
+}
+
+/// The weights of values at these times in the polynomial through them (Lagrange interpolation).
+fn weights(nodes: &[f64], t: f64) -> Vec<f64> {
+    let weight = |i: usize| -> f64 {
+        let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
+        others
+            .map(|(_, node)| (t - node) / (nodes[i] - node))
+            .product()
+    };
+    (0..nodes.len()).map(weight).collect()
 }
 
 /// Reads the table of `--inputs`, if the flag is given.

@@ -119,6 +119,42 @@ fn a_smooth_input_is_met_closely() {
     assert_near(q[0], 3.0 - 3.0_f64.sin(), 1.5e-6);
 }
 
+/// Cubics through rows have kinks at the rows: a run makes no step across one. The velocity is the integral of the input,
+/// which Simpson's rule gives exactly between two rows.
+#[test]
+fn kinks_between_cubics_cost_no_accuracy() {
+    let folder = Folder::new("inputs-kinks");
+    let t = [0.0, 0.37, 0.5, 0.93, 1.4, 1.45, 2.11, 2.5, 3.0];
+    let u = [1.0, -4.0, 3.0, 2.5, -7.0, 5.0, 0.5, -3.0, 4.0];
+    let rows: Vec<String> = t
+        .iter()
+        .zip(&u)
+        .map(|(t, u)| format!("{t:?},{u:?}"))
+        .collect();
+    let table = written(&folder, "kinks.csv", &format!("t,u\n{}\n", rows.join("\n")));
+    let cubic = |first: usize, at: f64| -> f64 {
+        let weight = |i: usize| {
+            let others = (first..first + 4).filter(|&j| j != i);
+            others.map(|j| (at - t[j]) / (t[i] - t[j])).product::<f64>()
+        };
+        (first..first + 4).map(|i| weight(i) * u[i]).sum()
+    };
+    let mut v = 0.0;
+    for k in 0..t.len() - 1 {
+        let first = k.saturating_sub(1).min(t.len() - 4);
+        let [from, to] = [t[k], t[k + 1]];
+        let sum = cubic(first, from) + 4.0 * cubic(first, 0.5 * (from + to)) + cubic(first, to);
+        v += (to - from) / 6.0 * sum;
+    }
+    for integrator in ["dop853", "dopri5"] {
+        let [_, qdot] = end(
+            MASS,
+            &format!("- --inputs {table} --integrator {integrator}"),
+        );
+        assert_near(qdot[0], v, 1e-11);
+    }
+}
+
 #[test]
 fn tables_that_make_no_sense_are_refused() {
     let folder = Folder::new("inputs-refused");
@@ -126,6 +162,7 @@ fn tables_that_make_no_sense_are_refused() {
         ("u\n1\n", "there is no column `t`"),
         ("t,w\n0,1\n", "no column is an input of the model: u, v"),
         ("t,u,u\n0,1,1\n", "two columns are called `u`"),
+        ("t,t,u\n0,0,1\n", "two columns are called `t`"),
         ("t,u\n0,1\n1,x\n", "line 3: `x` is no number"),
         ("t,u\n0,1\n2,1\n1,1\n", "line 4: the time decreases to 1"),
         ("t,u\n", "there are no rows"),

@@ -37,6 +37,9 @@ const GROW: f64 = 2.0;
 const SHRINK: f64 = 0.5;
 const SAFETY: f64 = 0.9;
 
+/// Number of steps after which they must have led over this fraction of the time.
+const HEADWAY: (u64, f64) = (4096, 1.0 / (1 << 20) as f64);
+
 /// The image of the frame's centre at the end of a step.
 struct Moved<S> {
     bounds: Bounds<S>,
@@ -65,6 +68,10 @@ pub struct CertifiedFlow<'a, Sys: Variational> {
     /// Length of the next trial step; `None` before the first step.
     next: Option<f64>,
     steps: u64,
+    /// Time and number of steps at the last check for headway.
+    checked: (f64, u64),
+    /// True if there was no headway at that check.
+    creeps: bool,
 }
 
 impl<Sys: Variational> Clone for CertifiedFlow<'_, Sys> {
@@ -76,6 +83,8 @@ impl<Sys: Variational> Clone for CertifiedFlow<'_, Sys> {
             remainder: self.remainder,
             next: self.next,
             steps: self.steps,
+            checked: self.checked,
+            creeps: self.creeps,
         }
     }
 }
@@ -90,6 +99,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
             remainder: REMAINDER,
             next: None,
             steps: 0,
+            checked: (t, 0),
+            creeps: false,
         }
     }
 
@@ -161,6 +172,9 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         if !hull.is_finite() {
             return Err(lost(Reason::NotFinite));
         }
+        if self.creeps {
+            return Err(lost(Reason::NoHeadway));
+        }
         let no_rates = || lost(self.field.no_rates(Interval::point(self.t), &hull));
         let reach = self.reach().ok_or_else(no_rates)?;
         let wished = self.next.map_or(reach, |next| next.min(reach));
@@ -207,6 +221,12 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     pub(super) fn make(&mut self, step: &Step<Sys>) {
         (self.frame, self.t, self.next) = (step.frame, step.later, Some(step.next));
         self.steps += 1;
+        let (time, steps) = self.checked;
+        let (most, headway) = HEADWAY;
+        if self.steps - steps >= most {
+            self.creeps = self.t - time < headway * self.t.abs();
+            self.checked = (self.t, self.steps);
+        }
     }
 
     /// Replaces time and set of states, for example after an impact. `t` is not before the present time.

@@ -66,6 +66,9 @@ pub enum Reason {
         /// The surface.
         surface: usize,
     },
+    /// Thousands of steps led over a millionth of the time: before an essential singularity they shrink so fast that the
+    /// motion never reaches it.
+    NoHeadway,
     /// The box has states of several modes.
     SeveralModes,
     /// The requested end of the run may lie before an impact or after it.
@@ -89,6 +92,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoTube => write!(f, "no box contains the motion over the shortest step"),
+            Self::NoHeadway => write!(f, "steps have become so short that they make no headway"),
             Self::NotDerived => write!(f, "the system has no kernels over intervals"),
             Self::SeveralModes => write!(f, "the box has states of several modes"),
             Self::NotFinite => write!(f, "the box became infinite"),

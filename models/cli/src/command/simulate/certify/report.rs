@@ -137,6 +137,7 @@ pub(super) fn reason(description: &Description, reason: Reason) -> String {
 pub(super) fn kind(reason: Reason) -> (&'static str, Option<usize>) {
     match reason {
         Reason::NoTube => ("no_tube", None),
+        Reason::NoHeadway => ("no_headway", None),
         Reason::NotDerived => ("not_derived", None),
         Reason::NotFinite => ("not_finite", None),
         Reason::MayGraze { surface } => ("may_graze", Some(surface)),
