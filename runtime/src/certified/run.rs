@@ -261,15 +261,22 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
                     self.progress.make(&prepared, sides);
                     limit = t_end;
                 }
-                Err(met) if met.surface.is_none() => {
+                Err(Met {
+                    surface: None,
+                    reason,
+                    ..
+                }) => {
                     limit = 0.5 * t + 0.5 * prepared.step.later;
                     if limit - t < least_step(t) {
-                        let reason = met.reason;
                         return Err(Lost { t, reason });
                     }
                 }
-                Err(met) => {
-                    let impact = self.meet(&prepared.step, met, t_end);
+                Err(Met {
+                    surface: Some(surface),
+                    reason,
+                    at,
+                }) => {
+                    let impact = self.meet(&prepared.step, surface, (reason, at), t_end);
                     let t = self.t();
                     let impact = impact.map_err(|reason| Lost { t, reason })?;
                     if impact.is_some() {
@@ -353,32 +360,30 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     fn meet(
         &mut self,
         step: &Step<Sys>,
-        met: Met,
+        surface: usize,
+        (mut reason, at): (Reason, f64),
         t_end: f64,
     ) -> Result<Option<CertifiedImpact<Sys>>, Reason> {
-        let mut last = met.at == 0.0;
-        let mut reason = met.reason;
+        let mut last = at == 0.0;
+        let is_behind = matches!(reason, Reason::MayBeBehind { .. });
         let mut nearest = None;
         for margin in MARGINS {
-            let part = met.at - margin * f64::max(met.at, 1.0 / 1024.0);
+            let part = at - margin * f64::max(at, 1.0 / 1024.0);
             let t = (Interval::point(self.t()) + step.length * Interval::point(part)).lo;
             last |= t <= self.t();
             let Some(near) = self.brought_to(if last { self.t() } else { t }) else {
                 continue;
             };
-            let crossable = met
-                .surface
-                .filter(|_| !matches!(met.reason, Reason::MayBeBehind { .. }));
-            let crossed = match crossable {
-                None => Err(met.reason),
-                Some(surface) => self.crossed(&near, surface),
+            let crossed = match is_behind {
+                true => Err(reason),
+                false => self.crossed(&near, surface),
             };
             match crossed {
                 Ok((surface, crossed)) => return self.take(near, surface, &crossed, t_end),
                 Err(found) => reason = found,
             }
             nearest.get_or_insert(near);
-            if last || crossable.is_none() {
+            if last || is_behind {
                 break;
             }
         }
