@@ -186,7 +186,7 @@ fn what_contradicts_the_file_is_refuted() {
 }
 
 #[test]
-fn energy_is_kept_by_the_emitted_motion_and_densities_balance_its_divergence() {
+fn energy_is_kept_by_the_motion_and_densities_balance_its_divergence() {
     let mut seen = 0;
     for (name, model) in &systems() {
         let declaration = Declaration::of(&model.description().source);

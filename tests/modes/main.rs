@@ -518,7 +518,7 @@ fn a_sliding_motion_meets_the_surfaces_of_both_modes() {
                 matches!(outcome, Outcome::StoppedAt { .. }),
                 "{name}, {x}: {outcome:?}"
             );
-            assert!((t - met(rate)).abs() < 1e-9, "{name}, {x}: {t}");
+            assert!((t - met(rate)).abs() < 1e-13, "{name}, {x}: {t}");
             for order in [[go, back, leave], [leave, go, back]] {
                 let (outcome, _, mode, q) = run(&sliding("", &order.concat()), met(rate) + 0.5);
                 assert_eq!(
@@ -527,7 +527,7 @@ fn a_sliding_motion_meets_the_surfaces_of_both_modes() {
                     "{name}, {x}, {order:?}"
                 );
                 assert!(
-                    (q.as_slice()[1] - 0.5).abs() < 1e-9,
+                    (q.as_slice()[1] - 0.5).abs() < 1e-13,
                     "{name}, {x}, {order:?}"
                 );
             }
@@ -537,7 +537,7 @@ fn a_sliding_motion_meets_the_surfaces_of_both_modes() {
             assert_eq!(outcome, Outcome::Done, "{name}, {x}");
             let end = q.as_slice();
             assert!(
-                end[0].abs() < 1e-9 && (end[1] + 0.25).abs() < 1e-9,
+                end[0].abs() < 1e-13 && (end[1] + 0.25).abs() < 1e-13,
                 "{name}, {x}: {end:?}"
             );
         }
@@ -593,7 +593,7 @@ fn surfaces_hold_the_motion_in_the_present_mode() {
                 let q = system.position(&run.state);
                 let q = q.as_slice();
                 assert!(
-                    (q[0] - end).abs() < 1e-8 && q[1].abs() < 1e-8,
+                    (q[0] - end).abs() < 1e-10 && q[1].abs() < 1e-10,
                     "{name}, {b}, {height}: {q:?}"
                 );
             }

@@ -199,7 +199,7 @@ fn a_kink_is_not_stepped_over() {
 }
 
 /// The rates are finite on both sides of what the motion reaches: the cut of `atan2`, and the end of the domain of a root.
-/// Each text has one coordinate and reaches its place at this time, before the end.
+/// Each motion reaches its place at the time `at`.
 #[test]
 fn a_jump_and_the_edge_of_a_domain_are_not_stepped_over() {
     static ACROSS: Text =

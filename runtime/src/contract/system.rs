@@ -209,8 +209,8 @@ pub trait System: VectorField {
         self.state_unchecked(t, q, qdot)
     }
 
-    /// The state in the mode of `from` with these positions, and with the nearest velocities in the metric that satisfy
-    /// the constraints. All other functions that make a state from positions make it in the first mode.
+    /// Same as [`System::state_nearest`], in the mode of the state `from`. All other functions that make a state from
+    /// positions make it in the mode in which a run begins.
     ///
     /// # Errors
     /// The errors of [`System::state_nearest`].

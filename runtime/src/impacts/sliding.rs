@@ -180,35 +180,43 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         step.prepare()?;
         self.path.follow_dense(step);
-        let (t, end) = (step.t_end(), *step.end());
-        let other = slide.across(step.system, t, &end)?;
-        let [here, there] = [&end, &other].map(|state| step.system.gaps(t, state));
+        let system = step.system;
+        let sides = |part: f64| -> Result<_, Outcome> {
+            let (t, here) = (step.time(part), step.state(part));
+            let other = slide.across(system, t, &here)?;
+            let gaps = [&here, &other].map(|state| system.gaps(t, state));
+            Ok(([here, other], gaps))
+        };
+        let ((_, start), (states, end)) = (sides(0.0)?, sides(reach)?);
         let mut first = None;
-        for surface in 0..here.count() {
-            if surface == slide.across || here.as_slice()[surface] == there.as_slice()[surface] {
+        for surface in 0..self.gaps.count() {
+            // The same gap at both ends is that of a surface of both modes.
+            let is_common = [&start, &end]
+                .iter()
+                .all(|[here, other]| here.as_slice()[surface] == other.as_slice()[surface]);
+            if surface == slide.across || is_common {
                 continue;
             }
             let until = first.map_or(reach, |(part, _)| part);
-            let part = self.first_across((slide, surface), until, &other, step);
+            let part = self.first_across((slide, surface), until, &states, step);
             first = part.map(|part| (part, surface)).or(first);
         }
         Ok(first)
     }
 
-    /// The first fraction of the step, up to `reach`, at which one surface of the other mode is met. `other` is the state
-    /// at the end of the step in that mode.
+    /// The first fraction of the step, up to `reach`, at which one surface of the other mode is met. The states are those
+    /// in this mode and in the other at one time.
     fn first_across<Step: Stepper<Sys>>(
         &self,
         (slide, surface): (Slide, usize),
         reach: f64,
-        other: &Sys::State,
+        [here, other]: &[Sys::State; 2],
         step: &mut StepView<'_, Sys, Step>,
     ) -> Option<f64> {
         let system = step.system;
-        // Both states have the same components except for the number of the mode.
-        let end = *step.end();
+        // They have the same components except for the number of the mode.
         let changed = |i: usize| {
-            let (one, other) = (end.as_slice()[i], other.as_slice()[i]);
+            let (one, other) = (here.as_slice()[i], other.as_slice()[i]);
             (one != other).then(|| TaylorModel::steady(Interval::point(other)))
         };
         let along = |part: [f64; 2]| {
@@ -218,7 +226,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let floor = {
             let sizes = self.sizes.as_slice();
             let rounded =
-                |i: usize| changed(i).unwrap_or_else(|| about(end.as_slice()[i], sizes[i]));
+                |i: usize| changed(i).unwrap_or_else(|| about(here.as_slice()[i], sizes[i]));
             let time = about(step.t_end(), step.t_end());
             system.gap_along(surface, time, &rounded).range().width()
         };
