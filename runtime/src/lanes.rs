@@ -10,7 +10,7 @@ use wide::f64x8;
 use crate::contract::{System, TaylorField};
 use crate::effects::Effect;
 use crate::integrate::lanes::{Abreast, MOST, Walker};
-use crate::integrate::{Counters, Stepper, Taylor};
+use crate::integrate::{Chosen, Counters, Stepper, Taylor};
 use crate::outcome::{Outcome, StartError};
 use crate::record::Observer;
 use crate::run::Run;
@@ -110,7 +110,7 @@ fn run_in_turn<'a, Sys, Effects, O>(
         let Member {
             tag,
             system,
-            stepper,
+            mut stepper,
             effects,
             mut observer,
             t,
@@ -119,6 +119,7 @@ fn run_in_turn<'a, Sys, Effects, O>(
             step_budget,
             looks_inside: _,
         } = member;
+        let stepper = Chosen::new(&mut stepper);
         let mut simulation =
             Simulation::new(system, stepper, effects).with_step_budget(step_budget);
         finished(tag, simulation.run(t, state, t_end, &mut observer));
@@ -177,7 +178,7 @@ fn run_in_lanes<'a, Sys, Effects, O>(
             made = abreast.step(&mut lanes);
         }
         for (lane, made) in lanes.iter_mut().zip(made) {
-            lane.stage = lane.after_step(made);
+            lane.after_step(made);
         }
     }
 }
@@ -221,18 +222,63 @@ where
     /// Advances the run until its next action is a step. True if it was a step already. The end of the run is an error.
     fn reach_step(&mut self) -> Result<bool, Outcome> {
         let was_ready = matches!(self.stage, Stage::Step);
+        let (stepper, rest) = self.split();
+        match Sys::IS_BEHIND_POINTERS {
+            true => rest.reach_step(&mut Chosen::new(stepper)),
+            false => rest.reach_step(stepper),
+        }?;
+        Ok(was_ready)
+    }
+
+    /// Processes a step and sets the next action. Makes the step first if the vector step did not include it.
+    fn after_step(&mut self, was_made: bool) {
+        let (stepper, rest) = self.split();
+        match Sys::IS_BEHIND_POINTERS {
+            true => rest.after_step(&mut Chosen::new(stepper), was_made),
+            false => rest.after_step(stepper, was_made),
+        }
+    }
+
+    /// The integrator, and the lane without it.
+    fn split(&mut self) -> (&mut Taylor<Sys>, Rest<'_, Sys, Effects, O>) {
+        let rest = Rest {
+            system: self.member.system,
+            effects: &mut self.member.effects,
+            observer: &mut self.member.observer,
+            t_end: self.member.t_end,
+            budget: self.member.step_budget,
+            progress: &mut self.progress,
+            stage: &mut self.stage,
+        };
+        (&mut self.member.stepper, rest)
+    }
+}
+
+/// A lane without its integrator.
+struct Rest<'a, Sys: System, Effects, O> {
+    system: &'a Sys,
+    effects: &'a mut Effects,
+    observer: &'a mut O,
+    t_end: f64,
+    budget: u64,
+    progress: &'a mut Progress<Sys::State>,
+    stage: &'a mut Stage,
+}
+
+impl<Sys: System, Effects: Effect<Sys>, O: Observer<Sys>> Rest<'_, Sys, Effects, O> {
+    fn reach_step<Step: Stepper<Sys>>(self, stepper: &mut Step) -> Result<(), Outcome> {
         let Self {
-            member,
-            progress,
+            observer,
+            t_end,
             stage,
+            ..
         } = self;
-        let (t_end, observer) = (member.t_end, &mut member.observer);
         let mut course = Course {
-            system: member.system,
-            stepper: &mut member.stepper,
-            effects: &mut member.effects,
-            budget: member.step_budget,
-            progress,
+            system: self.system,
+            stepper,
+            effects: self.effects,
+            budget: self.budget,
+            progress: self.progress,
         };
         loop {
             match stage {
@@ -252,35 +298,31 @@ where
                 course.set_off(t_end)?;
                 *stage = Stage::Step;
             }
-            course.check_budget()?;
-            return Ok(was_ready);
+            return course.check_budget();
         }
     }
 
-    /// Processes a step and returns the next action. Makes the step first if the vector step did not include it.
-    fn after_step(&mut self, was_made: bool) -> Stage {
-        let Self {
-            member, progress, ..
-        } = self;
+    fn after_step<Step: Stepper<Sys>>(self, stepper: &mut Step, was_made: bool) {
         let mut course = Course {
-            system: member.system,
-            stepper: &mut member.stepper,
-            effects: &mut member.effects,
-            budget: member.step_budget,
-            progress,
+            system: self.system,
+            stepper,
+            effects: self.effects,
+            budget: self.budget,
+            progress: self.progress,
         };
         if !was_made {
             let counters = &mut course.progress.counters;
-            let step = course.stepper.step(member.system, member.t_end, counters);
+            let step = course.stepper.step(self.system, self.t_end, counters);
             if let Err(failure) = step {
-                return Stage::Over(failure.into());
+                *self.stage = Stage::Over(failure.into());
+                return;
             }
         }
-        match course.go_on(&None, &mut member.observer) {
+        *self.stage = match course.go_on(&None, self.observer) {
             Ok(Next::Step) => Stage::Step,
             Ok(Next::Forces) => Stage::SetOff,
             Err(outcome) => Stage::Over(outcome),
-        }
+        };
     }
 }
 

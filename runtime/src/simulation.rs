@@ -9,7 +9,7 @@ use crate::error::Fault;
 use crate::events::first::narrowed;
 use crate::forces::{Along, Driven};
 use crate::independence;
-use crate::integrate::controller::least_trial;
+use crate::integrate::controller::least_step;
 use crate::integrate::{Chosen, Counters, Dop853, Instant, Rebound, Stepper};
 use crate::narrow;
 use crate::outcome::{Outcome, StartError};
@@ -309,7 +309,14 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             counters: &mut self.progress.counters,
             stepper: &mut *self.stepper,
         };
-        let proposed = self.effects.propose(&mut view)?;
+        let proposed = match self.effects.propose(&mut view) {
+            Err(outcome @ Outcome::NonFinite { component })
+                if component >= self.system.state_len() =>
+            {
+                return self.shorten_where_undefined(outcome);
+            }
+            proposed => proposed?,
+        };
         if let Some(exit) = chart::exit(&mut view, proposed.unwrap_or(1.0))? {
             return Err(self.leave_chart(exit, observer));
         }
@@ -521,6 +528,17 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.shorten_to(shown)
     }
 
+    /// Repeats the step from the same start with half its length, because a gap is not finite at its end. A surface may be
+    /// met before. At the shortest step the run ends with `outcome`.
+    #[cold]
+    fn shorten_where_undefined(&mut self, outcome: Outcome) -> Result<Next, Outcome> {
+        match self.shorten_to(0.5) {
+            Ok(_) => Ok(Next::Step),
+            Err(Outcome::StepUnderflow { .. }) => Err(outcome),
+            Err(other) => Err(other),
+        }
+    }
+
     /// Repeats the step from the same start if it resolves only a fraction of itself. True if it is repeated.
     fn shorten_to(&mut self, resolved: f64) -> Result<bool, Outcome> {
         if resolved >= 1.0 {
@@ -528,7 +546,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
         let (t, length) = (self.stepper.t_start(), self.stepper.length());
         let shorter = length * if resolved >= AHEAD { resolved } else { AHEAD };
-        if shorter < least_trial(t) {
+        if shorter < least_step(t) {
             return Err(Outcome::StepUnderflow { t });
         }
         let now = self.progress.now();

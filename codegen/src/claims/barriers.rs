@@ -127,8 +127,9 @@ fn has_infinite_potential(model: &Model, denominator: ExprId) -> bool {
         return false;
     }
     let (_, terms) = pool.linear_form(model.lagrangian.potential);
+    // A total derivative such as `dot(x)/x` leaves `0/x` in the potential.
     let infinite: Vec<_> = (terms.into_iter())
-        .filter(|(_, term)| !pool.is_finite(*term))
+        .filter(|(factor, term)| !factor.is_zero() && !pool.is_finite(*term))
         .collect();
     let signs = infinite.iter().map(|(factor, term)| {
         let sign = pool.sign(*term);

@@ -213,7 +213,10 @@ impl Numbers for Bent {
 
     fn atan2(self, x: Self) -> Self {
         let value = self.value.atan2(x.value);
-        let is_off_the_cut = x.value.lo > 0.0 || self.value.excludes_zero();
+        let is_still = self.value.is_zero() && self.rate.is_zero() && self.bend.is_zero();
+        // A motion along the cut stays on its upper side.
+        let is_along = is_still && x.value.hi < 0.0;
+        let is_off_the_cut = x.value.lo > 0.0 || self.value.excludes_zero() || is_along;
         if !is_off_the_cut {
             return Self {
                 value,

@@ -425,7 +425,9 @@ impl Numbers for ComplexInterval {
         if self.is_steady() && x.is_steady() {
             return Self::steady(value);
         }
-        let is_off_the_cut = x.real.lo > 0.0 || self.real.excludes_zero();
+        // A motion along the cut stays on its upper side.
+        let is_along = self.is_steady() && self.real.is_zero() && x.real.hi < 0.0;
+        let is_off_the_cut = x.real.lo > 0.0 || self.real.excludes_zero() || is_along;
         if !is_off_the_cut {
             return Self::ANYTHING;
         }

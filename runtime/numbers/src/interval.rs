@@ -88,6 +88,12 @@ impl Interval {
         self.lo > 0.0 || self.hi < 0.0
     }
 
+    /// True if the interval is 0 alone.
+    #[inline(always)]
+    pub fn is_zero(self) -> bool {
+        self.lo == 0.0 && self.hi == 0.0
+    }
+
     /// True if all of `other` is in this interval.
     #[inline(always)]
     pub fn contains(self, other: Self) -> bool {
@@ -434,12 +440,10 @@ impl Numbers for Interval {
 
     #[inline]
     fn atan2(self, x: Self) -> Self {
-        let is_off_the_cut = x.lo > 0.0 || self.excludes_zero();
+        // The cut belongs to the upper half plane.
+        let is_off_the_cut = x.lo > 0.0 || self.excludes_zero() || self.lo >= 0.0;
         if !is_off_the_cut {
-            return match x.lo == 0.0 && x.hi == 0.0 && self.lo == 0.0 && self.hi == 0.0 {
-                true => Self::ZERO,
-                false => Self::new(-Self::pi().hi, Self::pi().hi),
-            };
+            return Self::new(-Self::pi().hi, Self::pi().hi);
         }
         // The angle is monotone in each argument along each edge, so that its extremes are at corners.
         let corners = [
@@ -448,7 +452,7 @@ impl Numbers for Interval {
             (self.hi, x.lo),
             (self.hi, x.hi),
         ];
-        let angles = corners.map(|(y, x)| libm::atan2(y, x));
+        let angles = corners.map(|(y, x)| libm::atan2(y + 0.0, x + 0.0));
         let lo = angles.into_iter().fold(f64::INFINITY, f64::min);
         let hi = angles.into_iter().fold(f64::NEG_INFINITY, f64::max);
         widest(lo, hi, CALL)

@@ -6,10 +6,10 @@
 //! [`mul_add`] contracts only without `strict`. With `strict` a run therefore has the same bits on every machine.
 
 macro_rules! elementary {
-    ($($name:ident($($argument:ident),+) = $platform:ident, $rust:ident, $rounded:ident;)*) => {$(
+    ($($visible:vis $name:ident($($argument:ident),+) = $platform:ident, $rust:ident, $rounded:ident;)*) => {$(
         #[doc = concat!("`", stringify!($name), "` of the configured source.")]
         #[inline(always)]
-        pub fn $name($($argument: f64),+) -> f64 {
+        $visible fn $name($($argument: f64),+) -> f64 {
             #[cfg(feature = "strict")]
             { core_math::$rounded($($argument),+) }
             #[cfg(all(feature = "std", not(feature = "strict")))]
@@ -21,22 +21,28 @@ macro_rules! elementary {
 }
 
 elementary! {
-    sin(x) = sin, sin, sin;
-    cos(x) = cos, cos, cos;
-    tan(x) = tan, tan, tan;
-    asin(x) = asin, asin, asin;
-    acos(x) = acos, acos, acos;
-    atan(x) = atan, atan, atan;
-    atan2(y, x) = atan2, atan2, atan2;
-    exp(x) = exp, exp, exp;
-    ln(x) = ln, log, log;
-    log1p(x) = ln_1p, log1p, log1p;
-    sinh(x) = sinh, sinh, sinh;
-    cosh(x) = cosh, cosh, cosh;
-    tanh(x) = tanh, tanh, tanh;
-    asinh(x) = asinh, asinh, asinh;
-    cbrt(x) = cbrt, cbrt, cbrt;
-    powf(x, e) = powf, pow, pow;
+    pub sin(x) = sin, sin, sin;
+    pub cos(x) = cos, cos, cos;
+    pub tan(x) = tan, tan, tan;
+    pub asin(x) = asin, asin, asin;
+    pub acos(x) = acos, acos, acos;
+    pub atan(x) = atan, atan, atan;
+    angle(y, x) = atan2, atan2, atan2;
+    pub exp(x) = exp, exp, exp;
+    pub ln(x) = ln, log, log;
+    pub log1p(x) = ln_1p, log1p, log1p;
+    pub sinh(x) = sinh, sinh, sinh;
+    pub cosh(x) = cosh, cosh, cosh;
+    pub tanh(x) = tanh, tanh, tanh;
+    pub asinh(x) = asinh, asinh, asinh;
+    pub cbrt(x) = cbrt, cbrt, cbrt;
+    pub powf(x, e) = powf, pow, pow;
+}
+
+/// The angle of the point `(x, y)`, in `(-pi, pi]`. A zero of either sign counts as 0, so that the angle on the cut is `pi`.
+#[inline(always)]
+pub fn atan2(y: f64, x: f64) -> f64 {
+    angle(y + 0.0, x + 0.0)
 }
 
 /// The square root, which is correctly rounded everywhere.

@@ -177,7 +177,9 @@ impl Numbers for Rated {
     fn atan2(self, x: Self) -> Self {
         let (y, x_value) = (self.value, x.value);
         let value = y.atan2(x_value);
-        let is_off_the_cut = x_value.lo > 0.0 || y.excludes_zero();
+        // A motion along the cut stays on its upper side.
+        let is_along = y.is_zero() && self.rate.is_zero() && x_value.hi < 0.0;
+        let is_off_the_cut = x_value.lo > 0.0 || y.excludes_zero() || is_along;
         let rate = match is_off_the_cut {
             true => {
                 let squared = y.square() + x_value.square();

@@ -156,6 +156,10 @@ pub trait TaylorField: VectorField {
     /// Storage for the coefficients of intermediate values.
     type Jets<L: Numbers>: Jets;
 
+    /// True if the kernels are called through pointers. Then everything that follows a step in lanes is called through
+    /// a pointer as well, and is compiled once for all integrators.
+    const IS_BEHIND_POINTERS: bool = false;
+
     /// Work of an expansion, if known. It determines the order of the series.
     #[inline(always)]
     fn work(&self) -> Option<Work> {

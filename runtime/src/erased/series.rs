@@ -98,6 +98,8 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
     // the series.
     type Jets<L: Numbers> = ();
 
+    const IS_BEHIND_POINTERS: bool = true;
+
     fn work(&self) -> Option<Work> {
         (self.form().work)()
     }

@@ -97,8 +97,9 @@ pub(crate) struct Line<'a> {
 struct Floors(Option<(Region, f64)>);
 
 impl Floors {
-    /// The rounding about a stretch.
-    fn at(&mut self, stretches: &Stretches, rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
+    /// The rounding somewhere near a stretch. It may be far larger than on the stretch, if the gap is steep elsewhere in
+    /// the region: no stretch may be passed over because of it.
+    fn near(&mut self, stretches: &Stretches, rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
         let region = stretches.region();
         match self.0 {
             Some((known, floor)) if known == region => floor,
@@ -110,6 +111,15 @@ impl Floors {
             }
         }
     }
+}
+
+/// The least rounding at the ends and in the middle of a stretch: what is hidden by less than it may be passed over.
+fn least([left, right]: [f64; 2], rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
+    let places = [left, 0.5 * (left + right), right];
+    places
+        .into_iter()
+        .map(rounding)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// A fraction of the step with the gap there.
@@ -210,7 +220,7 @@ impl Line<'_> {
                 && view.span != ends
                 && (is_clear(&piece.without_remainder(), is_at_hand)
                     || !piece.is_sharper_than(match is_doubtful {
-                        true => floors.at(&stretches, self.rounding),
+                        true => floors.near(&stretches, self.rounding),
                         false => f64::INFINITY,
                     }))
             {
@@ -242,8 +252,11 @@ impl Line<'_> {
                 }
                 Signs::Negative => {
                     if above {
-                        let floor = floors.at(&stretches, self.rounding);
                         let low = self.place_at(right, &mut known);
+                        let mut floor = floors.near(&stretches, self.rounding);
+                        if low.gap >= -floor {
+                            floor = least(ends, self.rounding);
+                        }
                         if low.gap < -floor {
                             return Self::sunk(
                                 ends,
@@ -259,7 +272,7 @@ impl Line<'_> {
                         stretches.halve();
                         continue;
                     }
-                    let floor = floors.at(&stretches, self.rounding);
+                    let mut floor = floors.near(&stretches, self.rounding);
                     // A gap that rises from zero beyond rounding is not flat, however soon it falls.
                     let rises = is_at_hand && self.start.slope.is_some_and(|slope| slope > floor);
                     if rises && depth < DEPTH {
@@ -269,10 +282,14 @@ impl Line<'_> {
                     let before = self.place_at(left, &mut known);
                     let after = self.place_at(right, &mut known);
                     let gaps = [if is_at_hand { 0.0 } else { before.gap }, after.gap];
-                    let is_flat = match rises {
+                    let mut is_flat = match rises {
                         true => None,
                         false => is_within(floor, &piece, gaps),
                     };
+                    if is_flat.is_some() {
+                        floor = least(ends, self.rounding);
+                        is_flat = is_within(floor, &piece, gaps);
+                    }
                     match is_flat {
                         // The gap leaves zero, upwards or downwards, without an excursion to the other side.
                         Some(Signs::Positive) => {

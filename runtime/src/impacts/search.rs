@@ -34,6 +34,9 @@ pub(super) const FLAT: f64 = 64.0;
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
+/// Distance from a fall, as a fraction of the step, at which the slope of a gap without derivatives is measured.
+const ASIDE: f64 = 1.0 / (1 << 20) as f64;
+
 /// The first hit of one surface in a step.
 enum Found {
     Nothing,
@@ -65,6 +68,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.length = glance.length;
         self.parts.fill(None);
+        self.is_shown_by_values.fill(false);
         for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
@@ -366,7 +370,39 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let falls = |part| Ok::<_, Outcome>(rate_at(surface, step, part)? < 0.0);
         let is_approached = rate < 0.0 || falls(before)? || falls(after)?;
-        Ok(is_approached.then_some((there, rate)))
+        let slope = match is_approached {
+            true => None,
+            false => self.slope_by_values(surface, step, places)?,
+        };
+        self.is_shown_by_values[surface] = slope.is_some();
+        Ok((is_approached || slope.is_some()).then(|| (there, slope.unwrap_or(rate))))
+    }
+
+    /// The slope of a gap from its values on both sides of a fall, if they differ from 0 beyond rounding and the rates there
+    /// do not account for them. A gap with a kink along the motion has no derivative, and that of `tanh(h/eps)` may be
+    /// rounded to 0.
+    fn slope_by_values<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        Bracket { before, after, .. }: Bracket,
+    ) -> Result<Option<f64>, Outcome> {
+        let ends = [(before - ASIDE).max(0.0), (after + ASIDE).min(1.0)];
+        let gap = |part: f64| {
+            let gaps = step.system.gaps(step.time(part), &step.state(part));
+            gaps.as_slice()[surface]
+        };
+        let [first, last] = ends.map(gap);
+        step.counters.event_evaluations += 2;
+        let slope = (last - first) / ((ends[1] - ends[0]) * step.length());
+        let [before, after] = [
+            rate_at(surface, step, ends[0])?,
+            rate_at(surface, step, ends[1])?,
+        ];
+        let is_known = math::larger(before.abs(), after.abs()) >= 0.5 * slope.abs();
+        let mut is_clear = |part: f64, gap: f64| gap > 2.0 * self.rounding_at(surface, part, step);
+        let falls = !is_known && is_clear(ends[0], first) && is_clear(ends[1], -last);
+        Ok(falls.then_some(slope))
     }
 
     /// Refuses a wall that counts behind a pole of its gap while the gap is negative there: the motion came to the

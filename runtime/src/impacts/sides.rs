@@ -64,6 +64,7 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn cut_at(&mut self, surface: usize, part: f64, length: f64) {
         self.length = length;
         self.parts.fill(None);
+        self.is_shown_by_values[surface] = false;
         self.parts[surface] = Some(part);
         (self.proposed, self.behind) = (Some(part), None);
     }

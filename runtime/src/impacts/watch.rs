@@ -53,6 +53,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) proposed: Option<f64>,
     /// Fraction of the last step at which a surface is hit; valid while there is a proposal.
     pub(super) parts: PerSurface<Option<f64>, Sys::Gaps>,
+    /// True if only the values of the gap show that hit: its rate there is 0 or has no value.
+    pub(super) is_shown_by_values: PerSurface<bool, Sys::Gaps>,
     /// Grazing test of that hit.
     pub(super) grazes: PerSurface<Graze, Sys::Gaps>,
     /// Absolute change of the gap rate per unit of time near that hit.
@@ -122,6 +124,7 @@ impl<Sys: Impacting> Watch<Sys> {
             has_rates: false,
             proposed: None,
             parts: PerSurface::all(&zeros, None),
+            is_shown_by_values: PerSurface::all(&zeros, false),
             grazes: PerSurface::all(&zeros, Graze::None),
             bends: zeros,
             length: 0.0,
@@ -324,7 +327,7 @@ impl<Sys: Impacting> Watch<Sys> {
         for (surface, part) in self.parts.iter().enumerate() {
             if part.is_some_and(|part| (part - theta) * self.length <= SAME_TIME * now.t.abs()) {
                 hits.add(surface);
-                if self.is_passable(surface) {
+                if self.is_passable(surface) || self.is_shown_by_values[surface] {
                     hits.set_fallen(surface);
                 }
             }
@@ -444,7 +447,14 @@ impl<Sys: Impacting> Watch<Sys> {
         if self.is_stale {
             self.catch_up(step)?;
         }
-        let mut glance = glance(step)?;
+        let mut glance = match glance(step) {
+            Ok(glance) => glance,
+            Err(outcome) => {
+                // The driver repeats the step with another end.
+                self.sizes = self.sizes_at_start;
+                return Err(outcome);
+            }
+        };
         self.series.forget();
         if self.may_be_due(&glance) {
             glance.look_closer(&mut self.series, step)?;
