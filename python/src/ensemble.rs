@@ -61,6 +61,7 @@ pub struct NativeEnsemble {
     start: Given,
     off_constraint: OffConstraint,
     settings: Settings,
+    ends_as_declared: bool,
     members: Members,
     density: Option<Density>,
     columns: Columns,
@@ -119,6 +120,7 @@ impl NativeEnsemble {
         let mut ensemble = Self {
             columns: Columns::of(model.describe(), &members),
             settings: request.settings(built.as_ref(), off_constraint)?,
+            ends_as_declared: !request.has_end(),
             model: model.clone(),
             start,
             off_constraint,
@@ -202,6 +204,7 @@ impl NativeEnsemble {
             common: self,
             off_constraint: self.off_constraint,
             settings: &self.settings,
+            ends_as_declared: self.ends_as_declared,
             members: &self.members,
             density: self.density.as_ref(),
             starts: &[],
@@ -366,7 +369,12 @@ fn members(model: &dyn AnyModel, varied: &Varied<'_>) -> PyResult<Members> {
     let mut named = Vec::new();
     for (name, kind, numbers) in &varied.values {
         let found = Quantity::find(name, description);
-        let (name, quantity) = found.map_err(|unknown| refused(format!("vary: {unknown}")))?;
+        let (name, quantity) = found
+            .and_then(|(name, quantity)| {
+                quantity.check_present(model, &name)?;
+                Ok((name, quantity))
+            })
+            .map_err(|unknown| refused(format!("vary: {unknown}")))?;
         named.push((name, quantity, values(kind, numbers)?));
     }
     Ok(match &varied.rows {

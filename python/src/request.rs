@@ -95,9 +95,14 @@ impl Request<'_> {
         Ok(Course {
             origin,
             settings: self.settings(model, policy)?,
-            has_end: self.until.is_some(),
+            has_end: self.has_end(),
             steering: self.steering()?,
         })
+    }
+
+    /// True if an end time is given.
+    pub(crate) fn has_end(&self) -> bool {
+        self.until.is_some()
     }
 
     /// The given start.
@@ -296,9 +301,8 @@ impl Given {
     /// The declared initial state with changes.
     fn changed(&self, model: &dyn AnyModel) -> PyResult<Beginning> {
         let mut beginning = Beginning::Named(model.initial());
-        let description = model.description();
         for (name, value) in &self.state {
-            let component = Component::find(description, name);
+            let component = Component::find(model, name);
             let component = component.map_err(|unknown| refused(format!("state: {unknown}")))?;
             beginning.set(component, *value);
         }

@@ -211,7 +211,7 @@ fn apply_change(
     change: &str,
 ) -> Result<(), CliError> {
     let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
-    let found = Component::find(model.description(), name);
+    let found = Component::find(model, name);
     let component = found.map_err(|unknown| CliError::Unknown {
         place: "--initial".to_owned(),
         unknown,

@@ -1,7 +1,6 @@
 //! Initial states: positions and velocities are given, then completed and checked.
 
 use dalembert::StateError;
-use dalembert::describe::Description;
 
 use crate::model::{AnyModel, OffConstraint, Origin, Rates, Start};
 use crate::names::{self, Unknown};
@@ -16,26 +15,46 @@ pub enum Component {
 }
 
 impl Component {
-    /// The coordinate or velocity with this name, such as `x` or `x_dot`. Velocities of first-order systems are not
-    /// found, because they are not free.
+    /// The coordinate or velocity with this name, such as `x` or `x_dot`, in the present mode of a model. Velocities of
+    /// first-order systems are not found, because they are not free.
     ///
     /// # Errors
-    /// [`Unknown`] if no coordinate or velocity has this name.
-    pub fn find(description: &Description, name: &str) -> Result<Self, Unknown> {
-        let coordinates: Vec<&str> = names::coordinates(description).collect();
-        let n = coordinates.len();
-        let given = match description.is_first_order {
+    /// [`Unknown`] if no coordinate or velocity of the mode has this name.
+    pub fn find(model: &dyn AnyModel, name: &str) -> Result<Self, Unknown> {
+        let (present, found): (Vec<String>, Vec<Self>) = Self::present(model).into_iter().unzip();
+        let index = names::find(
+            "coordinate or velocity",
+            name,
+            present.iter().map(String::as_str),
+        );
+        let index = index.map_err(|unknown| Unknown {
+            mode: model.present_mode(),
+            ..unknown
+        })?;
+        Ok(found[index])
+    }
+
+    /// The free coordinates and velocities of the present mode of a model, with their names.
+    fn present(model: &dyn AnyModel) -> Vec<(String, Self)> {
+        let description = model.description();
+        let alone = model.mode_alone();
+        let of_mode = alone
+            .as_ref()
+            .map_or(description, |mode| mode.description());
+        let is_present =
+            |(_, name): &(usize, &str)| names::coordinates(of_mode).any(|other| other == *name);
+        let coordinates = names::coordinates(description).enumerate();
+        let coordinates: Vec<(usize, &str)> = coordinates.filter(is_present).collect();
+        let moving = match description.is_first_order {
             true => &[],
             false => coordinates.as_slice(),
         };
-        let velocities: Vec<String> = given.iter().map(|name| names::velocity(name)).collect();
-        let accepted = coordinates.iter().copied();
-        let accepted = accepted.chain(velocities.iter().map(String::as_str));
-        let index = names::find("coordinate or velocity", name, accepted)?;
-        Ok(match index < n {
-            true => Self::Position(index),
-            false => Self::Velocity(index - n),
-        })
+        let positions = coordinates.iter();
+        let positions = positions.map(|(index, name)| (name.to_string(), Self::Position(*index)));
+        let velocities = moving.iter();
+        let velocities =
+            velocities.map(|(index, name)| (names::velocity(name), Self::Velocity(*index)));
+        positions.chain(velocities).collect()
     }
 }
 

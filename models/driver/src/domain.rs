@@ -30,7 +30,8 @@ pub(crate) fn gaps<S: Instance + Variational>(
     Ok(counted.collect())
 }
 
-/// The first surface behind which a state lies, with its gap. `size` is the size of the state.
+/// The first wall behind which a state lies, with its gap. `size` is the size of the state. The surface of a reset is no
+/// wall: a motion may pass it, and an equilibrium may lie behind it.
 ///
 /// # Errors
 /// A [`Fault`] where a gap does not exist.
@@ -40,27 +41,11 @@ pub(crate) fn behind<S: Instance + Variational>(
     state: &S::State,
     size: f64,
 ) -> Result<Option<(usize, f64)>, Fault> {
-    let gaps = gaps(system, t, state)?;
-    let mut behind = gaps.into_iter().filter(|(_, gap)| *gap < -ROUNDING * size);
-    Ok(behind.next())
-}
-
-/// True if a state lies behind a wall. The surface of a reset is no wall: a motion may pass it, and an equilibrium may lie
-/// behind it.
-///
-/// # Errors
-/// A [`Fault`] where a gap does not exist.
-pub(crate) fn is_behind_wall<S: Instance + Variational>(
-    system: &S,
-    t: f64,
-    state: &S::State,
-    size: f64,
-) -> Result<bool, Fault> {
     let parameters = TaylorField::parameters(system);
     let is_wall = |surface| system.declared_law(&parameters, surface).0 != Law::Reset;
     let gaps = gaps(system, t, state)?;
-    let mut numbered = gaps.into_iter();
-    Ok(numbered.any(|(surface, gap)| gap < -ROUNDING * size && is_wall(surface)))
+    let mut behind = gaps.into_iter();
+    Ok(behind.find(|(surface, gap)| *gap < -ROUNDING * size && is_wall(*surface)))
 }
 
 /// The size of a state: the largest absolute value of its components, at least 1.

@@ -132,6 +132,9 @@ pub trait AnyModel: Runs {
     fn set_mode(&mut self, mode: usize);
     /// The name of the mode in which states are made; `None` if [`mode_alone`](Self::mode_alone) returns `None`.
     fn present_mode(&self) -> Option<&'static str>;
+
+    /// True if the equations, the surfaces or the resets may depend on time.
+    fn depends_on_time(&self) -> bool;
     /// The mode in which states are made, as a model of its own with the same values of parameters; its runs end at transitions.
     /// `None` for a model without modes, and for a model without a form.
     fn mode_alone(&self) -> Option<Box<dyn AnyModel>>;

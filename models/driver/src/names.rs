@@ -9,6 +9,8 @@ use dalembert::describe::Description;
 pub struct Unknown {
     /// Kind of the named thing: `parameter`, `surface`.
     pub what: &'static str,
+    /// The mode of the model in which names are accepted, if only those of one mode are.
+    pub mode: Option<&'static str>,
     /// The name that was given.
     pub given: String,
     /// The accepted names.
@@ -19,10 +21,15 @@ impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             what,
+            mode,
             given,
             accepted,
         } = self;
-        write!(f, "unknown {what} `{given}`{}", hints(given, accepted))
+        write!(f, "unknown {what} `{given}`")?;
+        if let Some(mode) = mode {
+            write!(f, " in mode `{mode}`, in which the motion starts")?;
+        }
+        f.write_str(&hints(given, accepted))
     }
 }
 
@@ -42,6 +49,7 @@ pub fn find<'a>(
         .or_else(|| place(&column(given)))
         .ok_or_else(|| Unknown {
             what,
+            mode: None,
             given: given.to_owned(),
             accepted: accepted.map(str::to_owned).collect(),
         })

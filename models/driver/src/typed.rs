@@ -202,6 +202,10 @@ impl<O: Owner> AnyModel for Typed<O> {
         Some(mode.name)
     }
 
+    fn depends_on_time(&self) -> bool {
+        System::depends_on_time(&self.owner.system())
+    }
+
     fn mode_alone(&self) -> Option<Box<dyn AnyModel>> {
         let (_, form) = self.owner.mode()?;
         let mut alone = of_form(form, self.code)?;

@@ -124,6 +124,12 @@ pub trait System: VectorField {
         false
     }
 
+    /// True if time occurs in the rates, the gaps, the conditions or the laws, whatever the values of the parameters.
+    /// Then the return map of a section is not the same at all times. The default is true.
+    fn depends_on_time(&self) -> bool {
+        true
+    }
+
     /// Adds the impulse `size * direction` to the momenta or quasi-velocities of the state.
     fn kick(&self, state: &mut Self::State, size: f64, direction: &Self::Impulse);
 

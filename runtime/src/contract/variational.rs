@@ -137,10 +137,6 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Deviations<L>, Fault>;
 
-    /// True if time occurs in the rates, the gaps, the conditions or the laws, whatever the values of the parameters.
-    /// Then the return map of a section is not the same at all times.
-    fn depends_on_time(&self) -> bool;
-
     /// The gaps `h_s`.
     ///
     /// # Errors

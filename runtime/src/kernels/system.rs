@@ -241,6 +241,10 @@ impl<S: Declared> System for S {
         self.tables().conserves_energy
     }
 
+    fn depends_on_time(&self) -> bool {
+        self.tables().depends_on_time
+    }
+
     #[inline]
     fn kick(&self, state: &mut S::State, size: f64, direction: &S::Impulse) {
         let [n, k] = Part::of(self, state.as_slice()).lengths();

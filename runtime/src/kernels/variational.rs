@@ -267,10 +267,6 @@ impl<S: HasVariations> Variational for S {
         <S as HasVariations>::columns()
     }
 
-    fn depends_on_time(&self) -> bool {
-        self.tables().depends_on_time
-    }
-
     fn tangents() -> Self::Tangents {
         <S as HasVariations>::tangents()
     }

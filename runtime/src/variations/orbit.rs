@@ -188,7 +188,9 @@ where
         self.system.rate(0.0, &trial.point, &mut rate)?;
         let way = trial.chart.size(&rate) * trial.passed.time;
         let size = trial.chart.size(&trial.point) * amplification::<Sys>(trial);
-        let least = f64::max(ROUNDING, STEPS * self.tolerance) * f64::max(size, 1.0);
+        // A point at 0 has no size of its own. A small orbit has small errors.
+        let size = size.max(way.min(1.0));
+        let least = f64::max(ROUNDING, STEPS * self.tolerance) * size;
         Ok(trial.residual <= f64::min(least, CLOSED * way))
     }
 

@@ -76,7 +76,11 @@ impl<S: StateVector> Slice<S> {
 
     /// Computes the directions back to the slice.
     pub(super) fn solve(&mut self, rates: &[S; GENERATORS], columns: &mut [S], turned: &mut [S]) {
-        let size = GENERATORS.min(columns.len());
+        // No more generators than components are independent.
+        let size = GENERATORS
+            .min(columns.len())
+            .min(turned.len())
+            .min(rates[0].as_slice().len());
         for j in 0..self.count {
             for (column, rate) in columns.iter_mut().zip(rates) {
                 *column = products(rate, self.functions());

@@ -76,6 +76,7 @@ pub fn run(
         common: &flags,
         off_constraint: args.run.state.off_constraint,
         settings: &settings,
+        ends_as_declared: args.run.until.is_none(),
         members: &members,
         density: None,
         starts: &[],
@@ -207,7 +208,13 @@ fn read_members(
 ) -> Result<Members, CliError> {
     let description = model.description();
     let members = match &args.from {
-        Some(path) => listed::read(path, streams.input, description, model.present_mode())?,
+        Some(path) => {
+            let start = listed::Start {
+                mode: model.present_mode(),
+                depends_on_time: model.depends_on_time(),
+            };
+            listed::read(path, streams.input, description, start)?
+        }
         None => members::varied(&args.vary, args.members, args.random, description)?,
     };
     members::check_start(&members, model, &args.run.state)?;

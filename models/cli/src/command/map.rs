@@ -149,6 +149,7 @@ fn make<F, T>(
         common: &flags,
         off_constraint: args.run.state.off_constraint,
         settings: &settings,
+        ends_as_declared: args.run.until.is_none(),
         members: &members,
         density: None,
         starts: &starts,
@@ -336,7 +337,7 @@ fn started(
     members: &Members,
 ) -> Result<(Component, Expression), CliError> {
     let (name, expression) = Expression::parse("--start", text)?.assigned()?;
-    let component = Component::find(model.description(), &name);
+    let component = Component::find(model, &name);
     let component = component.map_err(|unknown| CliError::Unknown {
         place: "--start".to_owned(),
         unknown,

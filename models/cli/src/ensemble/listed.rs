@@ -16,7 +16,7 @@ use crate::sink::is_stdout;
 
 /// Fixed columns of tables that are skipped, because they do not vary a member.
 const OTHERS: [&str; 8] = [
-    "t",
+    TIME,
     "energy",
     "event",
     MODE,
@@ -28,6 +28,18 @@ const OTHERS: [&str; 8] = [
 
 /// The column with the mode of a row.
 const MODE: &str = "mode";
+
+/// The column with the time of a row.
+const TIME: &str = "t";
+
+/// Where and when all members start.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Start<'a> {
+    /// The mode, for a model with modes.
+    pub mode: Option<&'a str>,
+    /// True if the motion depends on the time of the start, which is 0.
+    pub depends_on_time: bool,
+}
 
 /// Limits on the size of a table, which is kept in memory.
 #[derive(Debug, Clone, Copy)]
@@ -43,18 +55,18 @@ const LIMITS: Limits = Limits {
     members: 10_000_000,
 };
 
-/// Reads the members. In a table written by `ensemble`, only the columns `in.NAME` count. `mode` is the mode in which
-/// the members start, for a model with modes. Columns without any value belong to coordinates that this mode lacks; they
-/// are left out.
+/// Reads the members. In a table written by `ensemble`, only the columns `in.NAME` count. Columns without any value
+/// belong to coordinates that the mode of the start lacks; they are left out.
 ///
 /// # Errors
 /// A file that cannot be read, a column that the model does not have, a field that is not a number, a row in another
-/// mode, a row of more than a mebibyte, more than ten million rows.
+/// mode, a row at another time than 0 if the motion depends on time, a row of more than a mebibyte, more than ten million
+/// rows.
 pub fn read(
     path: &Path,
     stdin: &mut dyn Read,
     description: &Description,
-    mode: Option<&str>,
+    start: Start<'_>,
 ) -> Result<Members, CliError> {
     let file: Box<dyn Read + '_> = if is_stdout(path) {
         Box::new(stdin)
@@ -67,7 +79,7 @@ pub fn read(
         Box::new(opened?)
     };
     let place = format!("--from {}", path.display());
-    parse(&place, file, description, mode, LIMITS)
+    parse(&place, file, description, start, LIMITS)
 }
 
 /// Parses the members of a table.
@@ -75,7 +87,10 @@ fn parse(
     place: &str,
     file: impl Read,
     description: &Description,
-    mode: Option<&str>,
+    Start {
+        mode,
+        depends_on_time,
+    }: Start<'_>,
     limits: Limits,
 ) -> Result<Members, CliError> {
     let invalid = |reason: String| CliError::Input {
@@ -93,7 +108,10 @@ fn parse(
     let header = reader
         .headers()
         .map_err(|error| invalid(error.to_string()))?;
-    let in_mode = mode.and_then(|mode| Some((header.iter().position(|name| name == MODE)?, mode)));
+    let place_of = |column: &str| header.iter().position(|name| name == column);
+    let in_mode = mode.and_then(|mode| Some((place_of(MODE)?, mode)));
+    let is_state = !header.iter().any(|name| name.starts_with(INPUT));
+    let time = place_of(TIME).filter(|_| depends_on_time && is_state);
     let mut columns = columns(place, header, description)?;
     if columns.is_empty() {
         return Err(invalid(
@@ -122,6 +140,12 @@ fn parse(
                 let expected = format!("`{mode}`, the mode in which the members start (--mode)");
                 return Err(CliError::value(place(MODE), found, expected));
             }
+        }
+        if let Some(found) = time.and_then(|index| record.get(index))
+            && scalar::parse(found) != Ok(0.0)
+        {
+            let expected = "0, the time at which members start, as the motion depends on time";
+            return Err(CliError::value(place(TIME), found, expected));
         }
         for ((index, name, _), gaps) in columns.iter().zip(&mut gaps) {
             let text = record.get(*index).unwrap_or_default();
@@ -198,14 +222,18 @@ fn columns(
     description: &Description,
 ) -> Result<Vec<(usize, String, Quantity)>, CliError> {
     let is_ensemble = header.iter().any(|name| name.starts_with(INPUT));
+    let all = Quantity::all(description);
+    let is_quantity = |name: &str| all.iter().any(|(known, _)| known == name);
+    // A table written by `ensemble` has no such column.
+    if is_ensemble && let Some(name) = header.iter().find(|name| is_quantity(name)) {
+        let expected = format!("`{INPUT}{name}`, as other columns begin with `{INPUT}`");
+        return Err(CliError::value(place, name, expected));
+    }
     let ours = |name: &str| match is_ensemble {
         true => name.strip_prefix(INPUT).map(str::to_owned),
         false => {
             let is_other = OTHERS.contains(&name) || description.outputs.contains(&name);
-            let is_input = Quantity::all(description)
-                .iter()
-                .any(|(known, _)| known == name);
-            (is_input || !is_other).then(|| name.to_owned())
+            (is_quantity(name) || !is_other).then(|| name.to_owned())
         }
     };
     let named = header.iter().enumerate();
@@ -254,7 +282,7 @@ mod tests {
             row: 100_000,
             members: 1000,
         };
-        let members = parse("--from table.csv", table, &POINT, None, limits);
+        let members = parse("--from table.csv", table, &POINT, Start::default(), limits);
         members
             .map(|members| members.count())
             .map_err(|error| error.to_string())

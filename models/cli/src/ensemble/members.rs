@@ -44,15 +44,22 @@ pub fn varied(
     Ok(Members::product(varied, seed, count))
 }
 
-/// Refuses to vary velocities if the start is given by momenta.
+/// Refuses to vary velocities if the start is given by momenta, and components that the mode of the start lacks.
 ///
 /// # Errors
-/// [`CliError::Usage`], or an error of the flags of the state.
+/// [`CliError::Usage`], [`CliError::Unknown`], or an error of the flags of the state.
 pub fn check_start(
     members: &Members,
     model: &dyn AnyModel,
     args: &StateArgs,
 ) -> Result<(), CliError> {
+    for (name, quantity) in members.names().iter().zip(members.quantities()) {
+        let present = quantity.check_present(model, name);
+        present.map_err(|unknown| CliError::Unknown {
+            place: "--vary, --from".to_owned(),
+            unknown,
+        })?;
+    }
     let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
     let has_momenta = state_input::beginning(model, args)?.has_momenta();
     match has_momenta && members.quantities().iter().any(moved) {

@@ -35,6 +35,7 @@ pub fn density(
         };
         let shared = Shared {
             settings: &settings,
+            ends_as_declared: false,
             ..shared
         };
         let ranges = visited(shared, &axes, discard)?;

@@ -13,6 +13,7 @@ use super::members::Members;
 use super::row::{Field, Row};
 use super::values::Quantity;
 use crate::beginning::{Beginning, Component};
+use crate::course;
 use crate::integrator::Integrator;
 use crate::model::{AnyModel, Code, OffConstraint, Origin, Point, Together};
 use crate::outcome::{self, Fact};
@@ -58,6 +59,9 @@ pub struct Shared<'a> {
     pub off_constraint: OffConstraint,
     /// The settings of the runs.
     pub settings: &'a Settings,
+    /// True if no end is requested. A member then ends where the model says with the parameters of the member; the end
+    /// of the settings is that of the common parameters.
+    pub ends_as_declared: bool,
     /// The members.
     pub members: &'a Members,
     /// The density, if states are counted.
@@ -121,6 +125,10 @@ impl<'a> Runner<'a> {
         let (mut runs, mut refused) = (Vec::new(), Vec::new());
         for (member, seen) in members.clone().zip(&mut seen) {
             match self.origin(member) {
+                // Runs in lanes end together.
+                Ok(_) if self.until() != self.shared.settings.until => {
+                    return members.map(|member| self.alone(member)).collect();
+                }
                 Ok(origin) => runs.push(Together {
                     parameters: self.parameters(),
                     origin,
@@ -217,8 +225,31 @@ impl<'a> Runner<'a> {
     /// Runs a member. The error says why it does not start.
     fn attempt(&mut self, member: u64, watch: &mut dyn Watch) -> Result<Ending, String> {
         let origin = self.origin(member)?;
-        let ended = self.model.simulate(&origin, self.shared.settings, watch);
+        let (until, common) = (self.until(), self.shared.settings);
+        if until != common.until && self.shared.density.is_some() {
+            return Err(format!(
+                "by the model's `until` this member ends at t = {until}; a density counts states of all members up to one time, which has to be given"
+            ));
+        }
+        let settings = match until == common.until {
+            true => Cow::Borrowed(common),
+            false => Cow::Owned(Settings {
+                until,
+                ..common.clone()
+            }),
+        };
+        let ended = self.model.simulate(&origin, &settings, watch);
         ended.map_err(|refusal| self.told(&refusal))
+    }
+
+    /// The end of the member whose parameters are set.
+    fn until(&self) -> f64 {
+        let settings = self.shared.settings;
+        let declared = match self.shared.ends_as_declared {
+            true => course::horizon(self.model.as_ref(), None, settings.impacts),
+            false => None,
+        };
+        declared.unwrap_or(settings.until)
     }
 
     /// The reason why a member does not start, in the model's names.

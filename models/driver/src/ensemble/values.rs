@@ -3,6 +3,8 @@
 use dalembert::describe::Description;
 
 use super::random;
+use crate::beginning::Component;
+use crate::model::AnyModel;
 use crate::names::{self, Unknown};
 
 /// A quantity that may be varied between members, by index.
@@ -39,6 +41,18 @@ impl Quantity {
         let accepted = all.iter().map(|(name, _)| name.as_str());
         let index = names::find("coordinate, velocity or parameter", name, accepted)?;
         Ok(all.swap_remove(index))
+    }
+
+    /// Checks that the mode in which a model starts has this quantity, whose name is given.
+    ///
+    /// # Errors
+    /// [`Unknown`] for a coordinate or velocity that the mode lacks.
+    pub fn check_present(self, model: &dyn AnyModel, name: &str) -> Result<(), Unknown> {
+        match self {
+            Self::Parameter(_) => Ok(()),
+            Self::Position(_) | Self::Velocity(_) if model.present_mode().is_none() => Ok(()),
+            Self::Position(_) | Self::Velocity(_) => Component::find(model, name).map(drop),
+        }
     }
 }
 
