@@ -8,7 +8,7 @@ use dalembert_driver::ensemble::density::{Axis, Counts, Density, MOST_BINS, conv
 use dalembert_driver::ensemble::exact::ExactSum;
 use dalembert_driver::ensemble::parquet::{self, Writer};
 use dalembert_driver::ensemble::row::{Columns, Field, Kind};
-use dalembert_driver::ensemble::runner::{Common, Done, Runner, Shared};
+use dalembert_driver::ensemble::runner::{Common, Done, End, Runner, Shared};
 use dalembert_driver::ensemble::{Members, Quantity, Tally, Values, is_reached, pilot};
 use dalembert_driver::words::Advice;
 use dalembert_driver::{AnyModel, Beginning, OffConstraint, Settings};
@@ -61,7 +61,7 @@ pub struct NativeEnsemble {
     start: Given,
     off_constraint: OffConstraint,
     settings: Settings,
-    ends_as_declared: bool,
+    end: End,
     members: Members,
     density: Option<Density>,
     columns: Columns,
@@ -120,7 +120,7 @@ impl NativeEnsemble {
         let mut ensemble = Self {
             columns: Columns::of(model.describe(), &members),
             settings: request.settings(built.as_ref(), off_constraint)?,
-            ends_as_declared: !request.has_end(),
+            end: request.end(),
             model: model.clone(),
             start,
             off_constraint,
@@ -204,7 +204,7 @@ impl NativeEnsemble {
             common: self,
             off_constraint: self.off_constraint,
             settings: &self.settings,
-            ends_as_declared: self.ends_as_declared,
+            end: self.end,
             members: &self.members,
             density: self.density.as_ref(),
             starts: &[],

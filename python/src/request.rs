@@ -5,6 +5,7 @@ use std::sync::Arc;
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert_driver::course::IntegratorChoice;
+use dalembert_driver::ensemble::runner::End;
 use dalembert_driver::{
     AnyModel, Beginning, Component, Form, Integrator, OffConstraint, Origin, Rates, Settings,
     course, names,
@@ -95,14 +96,14 @@ impl Request<'_> {
         Ok(Course {
             origin,
             settings: self.settings(model, policy)?,
-            has_end: self.has_end(),
+            has_end: self.until.is_some(),
             steering: self.steering()?,
         })
     }
 
-    /// True if an end time is given.
-    pub(crate) fn has_end(&self) -> bool {
-        self.until.is_some()
+    /// Where the members of an ensemble end.
+    pub(crate) fn end(&self) -> End {
+        End::of(self.until, self.impacts)
     }
 
     /// The given start.

@@ -223,7 +223,12 @@ impl<Sys: Impacting> Watch<Sys> {
         self.is_stale = false;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::none(&rates);
-        (self.sizes, self.sizes_at_start) = (*now.state, *now.state);
+        // A start may be the end of another motion, whose components have been larger.
+        let mut sizes = now.system.scale(now.t, now.state);
+        for (size, value) in sizes.as_mut_slice().iter_mut().zip(now.state.as_slice()) {
+            *size = size.max(value.abs());
+        }
+        (self.sizes, self.sizes_at_start) = (sizes, sizes);
         self.relocate(&mut hits, &rates, now)?;
         Ok(hits)
     }

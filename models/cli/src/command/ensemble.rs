@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use dalembert_driver::ensemble::density::{Checkpoint, Counts, Density, convergence};
 use dalembert_driver::ensemble::row::Columns;
-use dalembert_driver::ensemble::runner::Shared;
+use dalembert_driver::ensemble::runner::{End, Shared};
 use dalembert_driver::ensemble::{Members, Tally, pilot};
 use dalembert_driver::{AnyModel, Settings};
 use serde_json::{Map, Value};
@@ -76,7 +76,7 @@ pub fn run(
         common: &flags,
         off_constraint: args.run.state.off_constraint,
         settings: &settings,
-        ends_as_declared: args.run.until.is_none(),
+        end: End::of(args.run.until, settings.impacts),
         members: &members,
         density: None,
         starts: &[],

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use dalembert::law::Law;
 use dalembert_driver::ensemble::row::INPUT;
-use dalembert_driver::ensemble::runner::Shared;
+use dalembert_driver::ensemble::runner::{End, Shared};
 use dalembert_driver::ensemble::{Members, Quantity};
 use dalembert_driver::{AnyModel, Component, Search, Settings};
 use serde_json::{Map, Value, json};
@@ -149,7 +149,7 @@ fn make<F, T>(
         common: &flags,
         off_constraint: args.run.state.off_constraint,
         settings: &settings,
-        ends_as_declared: args.run.until.is_none(),
+        end: End::of(args.run.until, counted),
         members: &members,
         density: None,
         starts: &starts,

@@ -1,7 +1,7 @@
 //! Default ranges of a density, from short runs of a few members. They depend on the whole ensemble, not on the shard.
 
 use super::density::{Axis, Density, count_samples};
-use super::runner::{Runner, Shared};
+use super::runner::{End, Runner, Shared};
 use crate::grid::padded;
 use crate::run::{Contact, Impact, Piece, Settings, Watch};
 
@@ -35,7 +35,7 @@ pub fn density(
         };
         let shared = Shared {
             settings: &settings,
-            ends_as_declared: false,
+            end: End::Requested,
             ..shared
         };
         let ranges = visited(shared, &axes, discard)?;

@@ -50,6 +50,29 @@ pub trait Common: Sync {
     }
 }
 
+/// Where the runs of an ensemble end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// At the end time of the settings.
+    Requested,
+    /// Where the model says with the parameters of the member, or later for runs that end after a number of impacts or
+    /// returns. The end time of the settings is that of the common parameters.
+    Declared {
+        /// This number.
+        counted: Option<u64>,
+    },
+}
+
+impl End {
+    /// The end for a requested end time, if there is one, and a number of impacts or returns.
+    pub fn of(until: Option<f64>, counted: Option<u64>) -> Self {
+        match until {
+            Some(_) => Self::Requested,
+            None => Self::Declared { counted },
+        }
+    }
+}
+
 /// Data common to the runs of all members.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
@@ -59,9 +82,8 @@ pub struct Shared<'a> {
     pub off_constraint: OffConstraint,
     /// The settings of the runs.
     pub settings: &'a Settings,
-    /// True if no end is requested. A member then ends where the model says with the parameters of the member; the end
-    /// of the settings is that of the common parameters.
-    pub ends_as_declared: bool,
+    /// Where the runs end.
+    pub end: End,
     /// The members.
     pub members: &'a Members,
     /// The density, if states are counted.
@@ -244,12 +266,11 @@ impl<'a> Runner<'a> {
 
     /// The end of the member whose parameters are set.
     fn until(&self) -> f64 {
-        let settings = self.shared.settings;
-        let declared = match self.shared.ends_as_declared {
-            true => course::horizon(self.model.as_ref(), None, settings.impacts),
-            false => None,
+        let declared = match self.shared.end {
+            End::Requested => None,
+            End::Declared { counted } => course::horizon(self.model.as_ref(), None, counted),
         };
-        declared.unwrap_or(settings.until)
+        declared.unwrap_or(self.shared.settings.until)
     }
 
     /// The reason why a member does not start, in the model's names.
