@@ -507,3 +507,22 @@ fn exponents_of_orbits_are_means_over_whole_periods() {
         }
     }
 }
+
+/// A return to a floor rounds to a state just behind it, from which the exponent is computed.
+#[test]
+fn exponents_exist_where_a_return_is_rounded() {
+    let text = "
+        Ball {
+            coordinates { x; }
+            parameters { e in [0, 1] = 0.9; }
+            lagrangian = dot(x)^2/2 - x;
+            impacts { floor: x >= 0 => newton(e); }
+            initial { x = 1; until = 20; }
+        }";
+    let line = "map - --vary x=0.3..3:40 --returns 3 --csv - --lyapunov 3";
+    let done = run_on(text, &line.split(' ').collect::<Vec<_>>());
+    for exponent in numbers_of(&done.output, "exponent") {
+        let error = exponent - 0.9_f64.ln();
+        assert!(error.abs() < 1e-9, "{exponent}");
+    }
+}

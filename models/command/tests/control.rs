@@ -542,3 +542,36 @@ fn the_second_derivative_of_the_running_cost_has_to_be_positive() {
     // u = -p/2, p = 2 x(1): x(1) = 1/2, cost 1/4 + 1/4.
     assert_near(number(&found[0]["cost"]), 0.5, 1e-12);
 }
+
+/// A motion crosses the surface of a reset that changes nothing: it costs what it costs without the surface, and both
+/// sides are allowed.
+#[test]
+fn the_surface_of_a_reset_is_no_wall() {
+    const CROSSED: &str = "
+        Crossed {
+            coordinates { x; v; }
+            inputs { u; }
+            cost { running = u^2/2; terminal = 5*(x - 2)^2; }
+            field { dot(x) = v; dot(v) = u; }
+            impacts { gate: x <= 1 => reset { }; }
+            initial { x = 0; until = 2; }
+        }";
+    let document = |line: &str| -> Value {
+        let done = run_on(CROSSED, &format!("control - {line} --json -"));
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        serde_json::from_str(&done.output).unwrap()
+    };
+    // From (x, v) the least cost over the time 2 is 5 (2 - x - 2 v)^2/(1 + 80/3).
+    let least = |x: f64| 5.0 * (2.0 - x).powi(2) / (1.0 + 80.0 / 3.0);
+    for (start, impacts) in [(0.0, 1), (1.5, 0)] {
+        let found = document(&format!("--impacts 0..1 --initial x={start}"));
+        let extremal = &found["extremals"][0];
+        let cost = extremal["cost"].as_f64().unwrap();
+        assert!((cost - least(start)).abs() < 1e-10, "{cost} from {start}");
+        assert_eq!(
+            extremal["impacts"].as_array().map(Vec::len),
+            Some(impacts),
+            "{extremal}"
+        );
+    }
+}

@@ -263,3 +263,43 @@ fn requests_without_a_grid_are_refused() {
     );
     refused("", &format!("{grid} --set m=-1"), "m");
 }
+
+/// The surface of a reset that changes nothing is no wall: costs are those without it, and none is negative.
+#[test]
+fn the_surface_of_a_reset_is_crossed() {
+    let crossed = |impacts: &str| {
+        format!(
+            "Crossed {{
+                coordinates {{ x; v; }}
+                inputs {{ u; }}
+                cost {{ running = u^2/2; terminal = 5*(x - 2)^2; }}
+                field {{ dot(x) = v; dot(v) = u; }}
+                {impacts}
+                initial {{ x = 0; until = 2; }}
+            }}"
+        )
+    };
+    let table = |input: &str| -> Vec<Vec<String>> {
+        let line = "control - --dp x=-1..3:21,v=-3..3:21,u=-2..2:9 --steps 20 --csv -";
+        let done = run_on(input, line);
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        let lines = done.output.lines().skip(1);
+        lines
+            .map(|line| line.split(',').map(str::to_owned).collect())
+            .collect()
+    };
+    let (free, gate) = (
+        table(&crossed("")),
+        table(&crossed("impacts { gate: x <= 1 => reset { }; }")),
+    );
+    assert_eq!(free.len(), gate.len());
+    let mut compared = 0;
+    for (free, gate) in free.iter().zip(&gate) {
+        assert_eq!(free[2].is_empty(), gate[2].is_empty(), "{free:?} {gate:?}");
+        if let (Ok(free), Ok(gate)) = (free[2].parse::<f64>(), gate[2].parse::<f64>()) {
+            assert!(gate >= 0.0 && (free - gate).abs() < 1e-9, "{free} {gate}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 300, "{compared}");
+}

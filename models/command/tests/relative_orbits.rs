@@ -553,3 +553,35 @@ fn gaits_are_followed_modulo_a_symmetry() {
     let [one, other] = [&points[points.len() / 2], &points[points.len() / 2 + 1]];
     assert!(number(&one["advance"][0]) < number(&other["advance"][0]));
 }
+
+/// Two components: fewer than the generators that a group may have.
+#[test]
+fn a_group_acts_on_a_system_of_two_components() {
+    let text = "
+        Ramp {
+            coordinates { x; y; }
+            field { dot(x) = 1; dot(y) = -1; }
+            impacts { floor: y >= 0 => reset { y = 1; }; }
+            initial { y = 1; until = 9; }
+        }";
+    let done = run_on(text, "orbit - --surface floor --modulo partial(x) --json -");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let found: Value = serde_json::from_str(&done.output).unwrap();
+    let period = found["period"].as_f64().unwrap();
+    assert!((period - 1.0).abs() < 1e-12, "{period}");
+}
+
+/// Weak damping: all motions tend to 0, and none is periodic, however little it changes in one turn.
+#[test]
+fn a_motion_that_decays_slowly_is_no_orbit() {
+    let text = "
+        Weak {
+            coordinates { x; v; }
+            parameters { c = 1e-7; }
+            field { dot(x) = v; dot(v) = -x - c*v; }
+            impacts { section: v >= 0 => reset { }; }
+            initial { x = 1; v = 0.1; until = 1000; }
+        }";
+    let done = run_on(text, "orbit - --surface section");
+    assert!(!done.output.contains("found in"), "{}", done.output);
+}

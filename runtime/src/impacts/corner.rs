@@ -1,7 +1,8 @@
 //! Corners: several surfaces hit at one time. Impacts act one after the other, and their order may matter.
 
 use super::hits::{Hits, Order};
-use super::impulse::{Impacts, STILL};
+use super::impulse::Impacts;
+use super::strike::STILL;
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::law::Law;

@@ -24,6 +24,7 @@ mod search;
 mod series;
 mod sides;
 mod sliding;
+mod strike;
 mod tangency;
 mod told;
 mod touch;
