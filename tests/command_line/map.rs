@@ -526,3 +526,23 @@ fn exponents_exist_where_a_return_is_rounded() {
         assert!(error.abs() < 1e-9, "{exponent}");
     }
 }
+
+/// Returns that repeat up to `t = 50` need not repeat later if the motion depends on time.
+#[test]
+fn orbits_of_motion_that_depends_on_time_are_told_as_such() {
+    let text = "
+        Kicked {
+            coordinates { s; x; }
+            field { dot(s) = -1; dot(x) = 0; }
+            impacts { tick: s >= 0 => reset { s = 1; x = x/2 + KICK; }; }
+            initial { s = 1; x = 0.3; until = 1000; }
+        }";
+    let line = "map - --vary x=0..1:2 --returns 50";
+    let summary = |kick: &str| {
+        let text = text.replace("KICK", kick);
+        run_on(&text, &line.split(' ').collect::<Vec<_>>()).output
+    };
+    let note = "the motion depends on time";
+    assert!(summary("exp(-(t - 60)^2)").contains(note));
+    assert!(!summary("0").contains(note));
+}

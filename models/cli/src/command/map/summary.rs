@@ -32,6 +32,10 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     if more > 0 {
         writeln!(output, "              and {more} more")?;
     }
+    if !sums.orbits.all().is_empty() && finished.model.depends_on_time() {
+        let note = "the motion depends on time: orbits repeat as far as the runs go";
+        writeln!(output, "  note        {note}")?;
+    }
     if let Some(reason) = &sums.reason {
         writeln!(
             output,
