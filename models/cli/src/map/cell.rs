@@ -9,7 +9,7 @@ use dalembert_driver::{
 
 use super::orbits::{self, Return};
 use super::request::{Request, Returns};
-use crate::names;
+use crate::{names, outcome};
 use dalembert_driver::ensemble::runner::{Runner, details};
 
 /// Outcome of a run that made all requested returns.
@@ -136,7 +136,11 @@ fn grown(
     };
     Some(match runner.model().exponent(&origin, &search, growth) {
         Ok(Some(Ok(exponent))) => Ok(exponent),
-        Ok(Some(Err(error))) => Err(error.to_string()),
+        Ok(Some(Err(error))) => {
+            let remarks = outcome::remarks_on_orbit(runner.model().description(), &error);
+            let reason = remarks.into_iter().find(|(title, _)| *title == "reason");
+            Err(reason.map_or_else(|| error.to_string(), |(_, reason)| reason))
+        }
         Ok(None) => Err("the scene has no variations".to_owned()),
         Err(refusal) => Err(refusal.to_string()),
     })

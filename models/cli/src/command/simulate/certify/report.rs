@@ -121,6 +121,9 @@ pub(super) fn reason(description: &Description, reason: Reason) -> String {
             "the law of surface `{}` may not give one finite state",
             name(surface)
         ),
+        Reason::Stops { surface } => {
+            format!("the motion may end at surface `{}`", name(surface))
+        }
         Reason::OffConstraint { surface } => format!(
             "the reset of surface `{}` leads off the constraints",
             name(surface)
