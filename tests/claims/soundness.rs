@@ -121,15 +121,16 @@ fn a_denominator_of_the_equations_hides_no_jump() {
         "conserved: energy*abs(x)/x",
         AT_ZERO,
     );
-    // The term is a total derivative: the motion is free, and the potential contains `0/x`.
-    for claim in ["conserved: abs(x)/x", "conserved: energy*abs(x)/x"] {
-        check(
-            &plane(
-                "lagrangian = (dot(x)^2 + dot(y)^2)/2 + dot(x)/x; frame { u: dot(x); v: dot(y); }",
-            ),
-            claim,
-            AT_ZERO,
-        );
+    // The terms are total derivatives: the motion is free. The potential contains `0/x`, the equations `0/sqrt(x)`.
+    for term in ["dot(x)/x", "dot(x)/x^2", "dot(x)*sqrt(x)", "dot(x)/sqrt(x)"] {
+        for claim in ["abs(x)/x", "energy*abs(x)/x"] {
+            let free = "frame { u: dot(x); v: dot(y); }";
+            check(
+                &format!("{} {free}", of_potential(term)),
+                &format!("conserved: {claim}"),
+                AT_ZERO,
+            );
+        }
     }
     for rate in ["(1 - cos(x))/x^2", "sin(x)/x", "abs(x)/x"] {
         check(&of_field(rate), "conserved: abs(x)/x", AT_ZERO);

@@ -266,7 +266,14 @@ fn is_analytic_in(model: &Model, id: ExprId, variables: &[SymbolId]) -> bool {
 
 /// True if the equations have no real values on one side of the zeros of an expression.
 fn ends_domain(model: &mut Model, equations: &[ExprId], id: ExprId) -> bool {
-    let parts = model.pool.reachable(equations);
+    // A total derivative such as `dot(x)*sqrt(x)` leaves `0/sqrt(x)` in the equations, and the motion passes.
+    let pool = &model.pool;
+    let terms = equations.iter().flat_map(|root| pool.linear_form(*root).1);
+    let terms: Vec<ExprId> = terms
+        .filter(|(factor, _)| !factor.is_zero())
+        .map(|(_, term)| term)
+        .collect();
+    let parts = model.pool.reachable(&terms);
     let needs_sign = parts.iter().any(|part| match model.pool.node(*part) {
         Node::Product(factors) => factors
             .iter()

@@ -12,6 +12,9 @@ use crate::variation::constant;
 /// Largest distance behind a surface that counts as rounding, as a fraction of the size of the state.
 const ROUNDING: f64 = 1e-9;
 
+/// Distance of a state from one at which a reset is compared with the state before, relative to the components.
+const ASIDE: f64 = 1e-3;
+
 /// The active surfaces at a state, those whose conditions hold, with their gaps.
 ///
 /// # Errors
@@ -30,8 +33,8 @@ pub(crate) fn gaps<S: Instance + Variational>(
     Ok(counted.collect())
 }
 
-/// The first wall behind which a state lies, with its gap. `size` is the size of the state. The surface of a reset is no
-/// wall: a motion may pass it, and an equilibrium may lie behind it.
+/// The first surface behind which a state lies and no motion comes, with its gap. `size` is the size of the state. A
+/// reset that changes nothing is a gate, which motion passes in both directions.
 ///
 /// # Errors
 /// A [`Fault`] where a gap does not exist.
@@ -41,11 +44,47 @@ pub(crate) fn behind<S: Instance + Variational>(
     state: &S::State,
     size: f64,
 ) -> Result<Option<(usize, f64)>, Fault> {
+    let mut gaps = gaps(system, t, state)?.into_iter();
+    let is_behind = |(surface, gap): &(usize, f64)| {
+        *gap < -ROUNDING * size && !is_gate(system, *surface, t, state)
+    };
+    Ok(gaps.find(is_behind))
+}
+
+/// True if a surface has a reset that changes no state, as seen at a state next to this one: a reset such as
+/// `dot(x) = -dot(x)` leaves some states as they are.
+fn is_gate<S: Instance + Variational>(
+    system: &S,
+    surface: usize,
+    t: f64,
+    state: &S::State,
+) -> bool {
+    let parameters = TaylorField::parameters(system);
+    let mut near = *state;
+    for (index, value) in near.as_mut_slice().iter_mut().enumerate() {
+        *value += ASIDE * (1.0 + value.abs()) * (1.0 + index as f64);
+    }
+    system.declared_law(&parameters, surface).0 == Law::Reset
+        && system
+            .landing(surface, t, &near)
+            .is_ok_and(|landing| landing.state == near)
+}
+
+/// True if a state lies behind a wall. The surface of a reset is no wall here: an equilibrium may lie behind it.
+///
+/// # Errors
+/// A [`Fault`] where a gap does not exist.
+pub(crate) fn is_behind_wall<S: Instance + Variational>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+    size: f64,
+) -> Result<bool, Fault> {
     let parameters = TaylorField::parameters(system);
     let is_wall = |surface| system.declared_law(&parameters, surface).0 != Law::Reset;
     let gaps = gaps(system, t, state)?;
-    let mut behind = gaps.into_iter();
-    Ok(behind.find(|(surface, gap)| *gap < -ROUNDING * size && is_wall(*surface)))
+    let mut numbered = gaps.into_iter();
+    Ok(numbered.any(|(surface, gap)| gap < -ROUNDING * size && is_wall(surface)))
 }
 
 /// The size of a state: the largest absolute value of its components, at least 1.

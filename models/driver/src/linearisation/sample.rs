@@ -138,7 +138,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
             *entry = dual.value;
         }
         self.system.outside_chart(&whole).is_none()
-            && domain::behind(self.system, self.t, &whole, domain::size(state)) == Ok(None)
+            && domain::is_behind_wall(self.system, self.t, &whole, domain::size(state)) == Ok(false)
     }
 
     /// Parameters and state as dual numbers, with derivatives with respect to [`DIRECTIONS`] variables from `first` on.
