@@ -9,7 +9,7 @@ use dalembert::{Fault, Instance};
 
 use crate::variation::constant;
 
-/// Largest distance behind a surface that counts as rounding, as a fraction of the size of the state.
+/// Largest difference that counts as rounding, as a fraction of the size of the state.
 const ROUNDING: f64 = 1e-9;
 
 /// Distance of a state from one at which a reset is compared with the state before, relative to the components.
@@ -60,14 +60,17 @@ fn is_gate<S: Instance + Variational>(
     state: &S::State,
 ) -> bool {
     let parameters = TaylorField::parameters(system);
-    let mut near = *state;
-    for (index, value) in near.as_mut_slice().iter_mut().enumerate() {
-        *value += ASIDE * (1.0 + value.abs()) * (1.0 + index as f64);
+    let mut near = S::Row::<f64>::zeros(state.as_slice().len());
+    for (index, value) in state.as_slice().iter().enumerate() {
+        near.as_mut_slice()[index] = value + ASIDE * (1.0 + value.abs()) * (1.0 + index as f64);
     }
+    let are_same = |after: &S::Row<f64>| {
+        let mut pairs = after.as_slice().iter().zip(near.as_slice());
+        pairs.all(|(after, before)| (after - before).abs() <= ROUNDING * (1.0 + before.abs()))
+    };
+    let after = system.passed(&parameters, surface, t, &near);
     system.declared_law(&parameters, surface).0 == Law::Reset
-        && system
-            .landing(surface, t, &near)
-            .is_ok_and(|landing| landing.state == near)
+        && after.is_ok_and(|after| after.as_ref().is_some_and(are_same))
 }
 
 /// True if a state lies behind a wall. The surface of a reset is no wall here: an equilibrium may lie behind it.

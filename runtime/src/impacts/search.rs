@@ -34,6 +34,9 @@ pub(super) const FLAT: f64 = 64.0;
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
+/// Maximum number of places at which the change of a gap rate near a hit is measured.
+const LOOKS: u32 = 8;
+
 /// Distance from a fall, as a fraction of the step, at which the slope of a gap without derivatives is measured.
 const ASIDE: f64 = 1.0 / (1 << 20) as f64;
 
@@ -436,6 +439,40 @@ impl<Sys: Impacting> Watch<Sys> {
         sizes
     }
 
+    /// Absolute change of the gap rate per unit of time near a hit at `part` with gap rate `rate`, on the way to where the
+    /// rate vanishes or doubles. The `secant` to an end of the step is far larger if the gap is steep there.
+    fn bend_near<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        part: f64,
+        (rate, secant): (f64, f64),
+        step: &StepView<'_, Sys, Step>,
+    ) -> Result<f64, Outcome> {
+        let (room, side) = if part > 0.5 {
+            (part, -1.0)
+        } else {
+            (1.0 - part, 1.0)
+        };
+        let mut bend = secant;
+        for _ in 0..LOOKS {
+            let way = rate.abs() / (bend * self.length);
+            let there = part + side * way;
+            // In this form NaN fails the comparisons.
+            let is_inside = way < room && there != part;
+            if !is_inside {
+                break;
+            }
+            let change = rate_at(surface, step, there)? - rate;
+            let found = change.abs() / ((there - part).abs() * self.length);
+            let is_less = found < 0.5 * bend;
+            if !is_less {
+                break;
+            }
+            bend = found;
+        }
+        Ok(bend)
+    }
+
     /// Marks a grazing impact: a hit so slow that the gap's lowest value would be within its rounding error, or within
     /// the error of the integrator. `rate` is the gap rate there, `last` that at the end of the step.
     fn note_graze<Step: Stepper<Sys>>(
@@ -452,12 +489,15 @@ impl<Sys: Impacting> Watch<Sys> {
         } else {
             (ends[1] - rate, 1.0 - part)
         };
-        self.bends.as_mut_slice()[surface] = change.abs() / (apart * self.length);
+        let secant = change.abs() / (apart * self.length);
+        self.bends.as_mut_slice()[surface] = secant;
         let mut graze = Graze::None;
         let tolerance = step.stepper.tolerance();
         let missed = SAFETY * self.errors * tolerance.relative().max(tolerance.absolute());
         let slow = SLOW.max(2.0 * math::sqrt(missed));
         if rate.abs() <= slow * ends[0].abs().max(ends[1].abs()) {
+            self.bends.as_mut_slice()[surface] =
+                self.bend_near(surface, part, (rate, secant), step)?;
             let sizes = self.sizes_until(part);
             let mut evaluations = 0;
             let rounding = rounding_along(surface, step, part, &sizes, &mut evaluations);

@@ -242,6 +242,10 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
 }
 
 pub(super) fn atan(x: Wide) -> Wide {
+    // A zero keeps its sign.
+    if x.nearest() == 0.0 {
+        return x;
+    }
     atan2(x, ONE)
 }
 
