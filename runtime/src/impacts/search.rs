@@ -34,8 +34,11 @@ pub(super) const FLAT: f64 = 64.0;
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
-/// Maximum number of places at which the change of a gap rate near a hit is measured.
+/// Maximum number of places near a hit at which the change of the gap rate is measured.
 const LOOKS: u32 = 8;
+
+/// Least distance of such a place from the hit, as a fraction of the step.
+const NEAREST: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Distance from a fall, as a fraction of the step, at which the slope of a gap without derivatives is measured.
 const ASIDE: f64 = 1.0 / (1 << 20) as f64;
@@ -455,10 +458,10 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let mut bend = secant;
         for _ in 0..LOOKS {
-            let way = rate.abs() / (bend * self.length);
+            let way = (rate.abs() / (bend * self.length)).max(NEAREST);
             let there = part + side * way;
-            // In this form NaN fails the comparisons.
-            let is_inside = way < room && there != part;
+            // In this form NaN fails the comparison.
+            let is_inside = way < room;
             if !is_inside {
                 break;
             }
