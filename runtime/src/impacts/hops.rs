@@ -5,7 +5,9 @@ use super::accumulation::Bounce;
 /// Number of flights that must have shrunk in a row before their height is tested.
 pub(super) const SHRUNK: u32 = 3;
 
-/// Ratio of the gap rates at the start of successive flights below which a single shrinking flight suffices.
+/// Ratio of the gap rates at the start of successive flights below which a single shrinking flight suffices, if the impact
+/// between them has reduced the gap rate as much. Gap rates at different places may differ because the gap is steep at
+/// one of them.
 const STEEP: f64 = 0.125;
 
 /// Record of successive impacts on one surface from which the motion bounced off.
@@ -69,7 +71,7 @@ impl Hops {
     pub(super) fn land(&mut self, bounce: Bounce) -> Option<Flight> {
         let Bounce {
             t,
-            rates: [_, rate],
+            rates: [arrival, rate],
             again,
             ..
         } = bounce;
@@ -79,7 +81,7 @@ impl Hops {
             }
             return None;
         }
-        let flight = self.last.map(|last| last.flight(t, rate));
+        let flight = self.last.map(|last| last.flight(t, [arrival, rate]));
         self.end = match flight {
             Some(flight) if flight.shrunk > 0 => Estimate::refined(self.end, flight.end(t)),
             _ => None,
@@ -105,11 +107,12 @@ impl Hops {
 }
 
 impl Impact {
-    /// The flight from this impact to the next one at `t`, after which the gap rate is `rate`.
-    fn flight(self, t: f64, rate: f64) -> Flight {
+    /// The flight from this impact to the next one at `t`, before and after which the gap has these rates.
+    fn flight(self, t: f64, [arrival, rate]: [f64; 2]) -> Flight {
         let length = t - self.t;
+        let is_steep = rate < STEEP * self.rate.min(arrival.abs());
         let shrunk = match is_shorter(length, self.length) {
-            true if rate < STEEP * self.rate => SHRUNK + 1,
+            true if is_steep => SHRUNK + 1,
             true => self.shrunk.saturating_add(1),
             false => 0,
         };
