@@ -37,6 +37,8 @@ pub(super) struct Flight {
     pub(super) before: Option<f64>,
     /// Gap rates at the start of this flight and of the next.
     rates: [f64; 2],
+    /// Ratio of the gap rates after and before the impact that ended it.
+    kept: f64,
     /// Number of successive flights up to this one that were shorter than their predecessor; the first flight counts,
     /// too. A flight that is shorter and ends with a far smaller gap rate ([`STEEP`]) gets [`SHRUNK`]` + 1` at once.
     shrunk: u32,
@@ -120,6 +122,7 @@ impl Impact {
             length,
             before: self.length,
             rates: [self.rate, rate],
+            kept: rate / arrival.abs(),
             shrunk,
         }
     }
@@ -135,7 +138,9 @@ impl Flight {
     pub(super) fn is_last(&self, rounding: impl FnOnce() -> f64) -> bool {
         let [before, rate] = self.rates;
         let is_shrinking = self.shrunk > SHRUNK && rate < before;
-        let next = self.length * self.factor();
+        // The ratio of the gap rates is far too small if the gap is steep at the impact before.
+        let shrunk = self.before.map_or(self.kept, |before| self.length / before);
+        let next = self.length * self.factor().max(shrunk);
         is_shrinking && 0.25 * rate * next <= rounding()
     }
 
