@@ -94,20 +94,27 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.path.refine(step)?;
         self.path.enclose();
-        let rounding = self.rounding_at(surface, 1.0, step);
         let drift = SAME_TIME * (self.rates.as_slice()[surface] * step.t_end()).abs();
         // A touched surface that counts at the start was not passed there.
         let first = match is_active(surface, step, 0.0) {
             true => gap_at(surface, step, 0.0).min(0.0),
             false => 0.0,
         };
-        let rounding = 2.0 * rounding + drift;
-        let floor = rounding.max(-4.0 * first);
+        // NOTE: a gap that is steep at one place has larger rounding errors there than elsewhere.
+        let rounding =
+            |part: f64, step: &mut _| 2.0 * self.rounding_at(surface, part, step) + drift;
+        let at_end = rounding(reach, step);
+        let least = [0.0, 0.5 * reach]
+            .map(|part| rounding(part, step))
+            .into_iter();
+        let floor = least.fold(at_end, f64::min).max(-4.0 * first);
         let step = RefCell::new(step);
         let counts = |part: f64| {
             let step = &mut *step.borrow_mut();
             step.counters.event_evaluations += 1;
-            gap_at(surface, step, part) < -floor
+            let gap = gap_at(surface, step, part);
+            gap < -floor
+                && gap < -rounding(part, step)
                 && is_active(surface, step, part)
                 && is_beyond_rounding(
                     step.system,
@@ -119,8 +126,11 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let is_free = |part| self.is_free(part, (surface, floor), &mut step.borrow_mut());
         let found = onset(reach, is_free, counts);
-        let step = &**step.borrow();
-        Ok(found.map(|found| (begin(surface, found.after, step), rounding)))
+        let step = step.into_inner();
+        Ok(found.map(|found| {
+            let rounding = rounding(found.after, step);
+            (begin(surface, found.after, step), rounding)
+        }))
     }
 
     /// True if the gap is certainly nowhere below `-floor` on a part of the step, or if the surface counts nowhere on
