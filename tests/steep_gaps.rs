@@ -1,7 +1,7 @@
-//! First impacts on surfaces whose gaps say little elsewhere: steep far away, saturated, with a kink along the whole motion,
-//! or on the cut of `atan2`. The motions are straight, so that the times are known.
+//! Impacts on surfaces whose gaps say little elsewhere: steep far away, saturated, with a kink along the whole motion, or on
+//! the cut of `atan2`. The times of first impacts and the numbers of later ones are known.
 
-use dalembert::Outcome;
+use dalembert::{Outcome, System};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::Course;
 use dalembert_stability::text::Text;
@@ -171,4 +171,65 @@ fn a_saturated_gap_shows_its_fall_by_its_values() {
         time,
     };
     reaches_in_time(&[start], 10.0);
+}
+
+/// A point above a floor under the gravity 10, from the height 1 at rest. It bounces at `sqrt(0.2) (1 + 2 k)`.
+macro_rules! bouncing {
+    ($gap:literal) => {
+        Text::new(concat!(
+            "Bouncing { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - 10*y; impacts { floor: ",
+            $gap,
+            "; } }"
+        ))
+    };
+}
+
+/// Every elastic motion ends with its energy, after this number of impacts, with and without contact.
+fn bounces(text: &Text, start: [[f64; 2]; 2], until: f64, impacts: u64) {
+    let point = text.model();
+    for &integrator in Integrator::every() {
+        for rests in [false, true] {
+            let course = Course::new(&point, &start[0], &start[1], until).step(1e-3);
+            let course = if rests { course.resting() } else { course };
+            let first = point.energy(0.0, course.start()).expect("an energy");
+            let run = course.observed(integrator, &mut ());
+            let case = format!("{}, {rests}: {:?}", integrator.name(), run.outcome);
+            assert_eq!(
+                (run.outcome, run.counters.impacts),
+                (Outcome::Done, impacts),
+                "{case}"
+            );
+            let last = point.energy(run.t, &run.state).expect("an energy");
+            assert!(
+                (last - first).abs() < 1e-5 * first,
+                "{case}: {first} to {last}"
+            );
+        }
+    }
+}
+
+/// Gap rates far from an impact, or at another place of the surface, are larger by many powers of ten.
+#[test]
+fn impacts_on_steep_surfaces_are_neither_grazes_nor_hops() {
+    let floors = [
+        bouncing!("exp(-y) <= 1"),
+        bouncing!("sinh(9*y) >= 0"),
+        bouncing!("y*exp(-9*y) >= 0"),
+        bouncing!("(y + 2)^21 >= 2^21"),
+        bouncing!("asinh(1e3*y) >= 0 when x > -1"),
+        bouncing!("atan(1e6*y) >= 0 when x > -1"),
+        bouncing!("0.01/(y + 0.01) <= 1 when x > -1"),
+    ];
+    for floor in &floors {
+        bounces(floor, [[0.0, 1.0], [0.7, 0.0]], 4.0, 4);
+    }
+    let between = [
+        point!("(1 - y^2)*exp(20*y) >= 0"),
+        point!("(1 - y)*(1 + y)*exp(17*y) >= 0"),
+    ];
+    for walls in &between {
+        bounces(walls, [[0.0, 0.0], [0.0, 1.0]], 8.5, 4);
+    }
+    static POWER: Text = point!("x^8 + y^8 <= 1");
+    bounces(&POWER, [[-0.3, 0.0], [0.9758, 0.2187]], 30.0, 18);
 }
