@@ -3,12 +3,14 @@
 //! If the volume is smooth and each impulse vanishes with the gap rate, impacts accumulate for almost no start (W.
 //! Clark, thesis, Theorem VII.17). If moreover the energy is conserved and its levels are compact, almost every motion
 //! comes back arbitrarily near to its start (Theorem VII.21). The levels are compact where surfaces bound all
-//! coordinates that are not angles, the metric is positive and the potential finite. A Lagrangian that may be infinite
-//! somewhere, such as `dot(x)^2/(x - 1/2)^2`, has no such consequence: its levels and their volumes may be infinite.
+//! coordinates that are not angles, the metric is positive and the potential finite, all of them everywhere. A Lagrangian
+//! that may be infinite somewhere, such as `dot(x)^2/(x - 1/2)^2`, has no such consequence: its levels and their volumes may
+//! be infinite. A metric that may vanish, such as `(1 + cos(x))*dot(x)^2`, has none either: all motions may end there.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
 use super::conserved::check_conserved;
+use super::definite::is_regular;
 use super::examine::explicit;
 use super::finding::Verdict;
 use super::hybrid::{Density, Effect, Surroundings};
@@ -34,7 +36,9 @@ pub(super) fn corollaries(
     let Some(bounds) = bounded(model) else {
         return found;
     };
+    let metric = model.lagrangian.metric.clone();
     if model.pool.is_finite(model.lagrangian.whole)
+        && is_regular(model, &metric)
         && is_autonomous(model, around)
         && keeps_energy(model, around)
     {
@@ -46,7 +50,7 @@ pub(super) fn corollaries(
             ),
         };
         found.push(format!(
-            "almost every start comes back arbitrarily near: the energy is kept, and {bounds}, so that energy levels are compact where the metric is positive and the potential finite"
+            "almost every start comes back arbitrarily near: the energy is kept, and {bounds}, so that energy levels are compact"
         ));
     }
     found

@@ -77,6 +77,8 @@ fn where_metric_or_potential_are_infinite_no_recurrence_is_reported() {
     };
     check(&on_circle("dot(a)^2/2 + cos(a)"), KEPT, [false, true]);
     check(&on_circle("dot(a)^2/2/(1 + cos(a))^2"), KEPT, [false; 2]);
+    // All motions end where the metric vanishes.
+    check(&on_circle("(1 + cos(a))*dot(a)^2/2"), KEPT, [false; 2]);
     check(&on_circle("dot(a)^2/2 + tan(a)"), KEPT, [false; 2]);
     let between = "Line { coordinates { x; } lagrangian = dot(x)^2/2/(x - 1/2)^2;
         impacts { low: x >= 0; high: x <= 1; } CLAIM }";
