@@ -132,6 +132,17 @@ fn a_denominator_of_the_equations_hides_no_jump() {
             );
         }
     }
+    // What cancels does not end the motion.
+    for rate in [
+        "1 + sqrt(x) - sqrt(x)",
+        "exp(ln(x) - ln(x))",
+        "cos(0*ln(x))",
+        "1 + ln(1 + 0*sqrt(x))",
+        "sqrt(x)^0",
+    ] {
+        let declared = format!("coordinates {{ x; }} field {{ dot(x) = {rate}; }}");
+        check(&declared, "conserved: abs(x)/x", AT_ZERO);
+    }
     for rate in ["(1 - cos(x))/x^2", "sin(x)/x", "abs(x)/x"] {
         check(&of_field(rate), "conserved: abs(x)/x", AT_ZERO);
         check(

@@ -14,8 +14,10 @@
 //! *Ends of the domain.* If the equations contain the logarithm or a root of `B`, and `B` is strictly monotonic in a
 //! coordinate, they have no real values on one side of its zeros. No motion passes to that side.
 
+use std::collections::BTreeSet;
+
 use dalembert_expr::{
-    ExprId, Function, Node, Rational, Sign, Singularity, SymbolId, Verdict as Zero,
+    ExprId, Function, Node, Pool, Rational, Sign, Singularity, SymbolId, Verdict as Zero,
 };
 
 use super::continuity::has_gaps;
@@ -264,16 +266,37 @@ fn is_analytic_in(model: &Model, id: ExprId, variables: &[SymbolId]) -> bool {
     })
 }
 
+/// The parts of expressions, without those that cancel. `sqrt(x) - sqrt(x)` leaves `0*sqrt(x)`, and so does the total
+/// derivative `dot(x)*sqrt(x)` in a Lagrangian; motion passes where such a part has no value.
+fn occurring(pool: &Pool, roots: &[ExprId]) -> Vec<ExprId> {
+    let mut found = BTreeSet::new();
+    let mut pending = roots.to_vec();
+    while let Some(id) = pending.pop() {
+        if !found.insert(id) {
+            continue;
+        }
+        match pool.node(id) {
+            Node::Sum { terms, .. } => pending.extend(
+                (terms.iter())
+                    .filter(|(factor, _)| !factor.is_zero())
+                    .map(|(_, term)| *term),
+            ),
+            Node::Product(factors) => pending.extend(
+                (factors.iter())
+                    .filter(|(_, power)| !power.is_zero())
+                    .map(|(base, _)| *base),
+            ),
+            Node::Call(_, argument) => pending.push(*argument),
+            Node::Atan2(y, x) => pending.extend([*y, *x]),
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => {}
+        }
+    }
+    found.into_iter().collect()
+}
+
 /// True if the equations have no real values on one side of the zeros of an expression.
 fn ends_domain(model: &mut Model, equations: &[ExprId], id: ExprId) -> bool {
-    // A total derivative such as `dot(x)*sqrt(x)` leaves `0/sqrt(x)` in the equations, and the motion passes.
-    let pool = &model.pool;
-    let terms = equations.iter().flat_map(|root| pool.linear_form(*root).1);
-    let terms: Vec<ExprId> = terms
-        .filter(|(factor, _)| !factor.is_zero())
-        .map(|(_, term)| term)
-        .collect();
-    let parts = model.pool.reachable(&terms);
+    let parts = occurring(&model.pool, equations);
     let needs_sign = parts.iter().any(|part| match model.pool.node(*part) {
         Node::Product(factors) => factors
             .iter()

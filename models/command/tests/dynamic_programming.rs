@@ -297,7 +297,7 @@ fn the_surface_of_a_reset_is_crossed() {
     for (free, gate) in free.iter().zip(&gate) {
         assert_eq!(free[2].is_empty(), gate[2].is_empty(), "{free:?} {gate:?}");
         if let (Ok(free), Ok(gate)) = (free[2].parse::<f64>(), gate[2].parse::<f64>()) {
-            assert!(gate >= 0.0 && (free - gate).abs() < 1e-9, "{free} {gate}");
+            assert!(gate > -1e-6 && (free - gate).abs() < 1e-9, "{free} {gate}");
             compared += 1;
         }
     }
