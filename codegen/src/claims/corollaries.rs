@@ -1,7 +1,8 @@
 //! Consequences of an invariant volume, with their hypotheses, and of a volume that is not invariant.
 //!
 //! If the volume is smooth and each impulse vanishes with the gap rate, impacts accumulate for almost no start (W.
-//! Clark, thesis, Theorem VII.17). If moreover the energy is conserved and its levels are compact, almost every motion
+//! Clark, thesis, Theorem VII.17). Velocities that become infinite are excluded: every motion between two walls that close
+//! has infinitely many impacts before they meet, and so have motions in a wedge that fall to the centre of `-1/r^2`. If moreover the energy is conserved and its levels are compact, almost every motion
 //! comes back arbitrarily near to its start (Theorem VII.21). The levels are compact where surfaces bound all
 //! coordinates that are not angles, the metric is positive and the potential finite, all of them everywhere. A Lagrangian
 //! that may be infinite somewhere, such as `dot(x)^2/(x - 1/2)^2`, has no such consequence: its levels and their volumes may
@@ -10,6 +11,7 @@
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
 use super::conserved::check_conserved;
+use super::continuity::has_gaps;
 use super::definite::is_regular;
 use super::examine::explicit;
 use super::finding::Verdict;
@@ -29,7 +31,7 @@ pub(super) fn corollaries(
     let mut found = Vec::new();
     if !model.surfaces.is_empty() {
         found.push(
-            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; grazing motion is assumed to go on"
+            "impacts accumulate for almost no start, unless states become unbounded: the volume is smooth, and impulses vanish with the gap rate; grazing motion is assumed to go on"
                 .to_owned(),
         );
     }
@@ -38,6 +40,7 @@ pub(super) fn corollaries(
     };
     let metric = model.lagrangian.metric.clone();
     if model.pool.is_finite(model.lagrangian.whole)
+        && exists_everywhere(model, around)
         && is_regular(model, &metric)
         && is_autonomous(model, around)
         && keeps_energy(model, around)
@@ -123,6 +126,14 @@ fn impulses_vanish(model: &Model) -> bool {
         Law::Newton(_) => true,
         _ => false,
     })
+}
+
+/// True if the equations of motion are certain to have real values at all states.
+fn exists_everywhere(model: &Model, around: &Surroundings<'_>) -> bool {
+    let roots = around.dynamics.roots();
+    roots
+        .into_iter()
+        .all(|root| model.pool.is_finite(root) && !has_gaps(model, root))
 }
 
 /// True if neither the motion nor a gap depends on time.

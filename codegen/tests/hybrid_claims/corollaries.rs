@@ -5,7 +5,7 @@ use dalembert_codegen::claims::Verdict;
 use crate::findings;
 use crate::systems::{ball, disk, field, particle};
 
-const RARE: &str = "impacts accumulate for almost no start";
+const RARE: &str = "impacts accumulate for almost no start, unless states become unbounded";
 const RECURRENT: &str = "almost every start comes back arbitrarily near";
 
 /// Checks whether the proof of `volume: kept` has the remarks `RARE` and `RECURRENT`, in this order.
@@ -77,6 +77,12 @@ fn where_metric_or_potential_are_infinite_no_recurrence_is_reported() {
     };
     check(&on_circle("dot(a)^2/2 + cos(a)"), KEPT, [false, true]);
     check(&on_circle("dot(a)^2/2/(1 + cos(a))^2"), KEPT, [false; 2]);
+    // A force that does no work and has no value where the cosine is negative.
+    let gyroscopic =
+        "Torus { coordinates { x: angle; y: angle; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        forces { turn: F*(dot(x)*d(y) - dot(y)*d(x)); } CLAIM }";
+    check(&gyroscopic.replace('F', "cos(x)"), KEPT, [false, true]);
+    check(&gyroscopic.replace('F', "sqrt(cos(x))"), KEPT, [false; 2]);
     // All motions end where the metric vanishes.
     check(&on_circle("(1 + cos(a))*dot(a)^2/2"), KEPT, [false; 2]);
     check(&on_circle("dot(a)^2/2 + tan(a)"), KEPT, [false; 2]);
