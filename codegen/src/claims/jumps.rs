@@ -9,24 +9,32 @@ use super::evidence::Wording;
 use super::finding::{Verdict, digits};
 use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
-use super::symmetry::lifted;
+use super::symmetry::{gain, lifted};
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
-/// One sentence for each surface.
+/// One sentence for each surface, about the momentum less the gain of the Lagrangian, which is conserved between impacts.
 pub(super) fn momentum_at_surfaces(
     model: &mut Model,
     around: &Surroundings<'_>,
     field: &[ExprId],
 ) -> Vec<String> {
+    let gain = gain(model, field);
+    let name = match gain {
+        Some(_) => "its momentum less the gain",
+        None => "its momentum",
+    };
     let mut terms = Vec::new();
     for (component, momentum) in field.iter().zip(model.derived.momenta.clone()) {
         let momentum = model.pool.variable(momentum);
         terms.push(model.pool.mul(*component, momentum));
     }
-    let momentum = model.pool.sum(&terms);
+    let mut momentum = model.pool.sum(&terms);
+    if let Some(gain) = gain {
+        momentum = model.pool.sub(momentum, gain);
+    }
     (model.acting_surfaces().into_iter())
-        .map(|surface| at_surface(model, around, surface, (momentum, field)))
+        .map(|surface| at_surface(model, around, surface, (momentum, name, field)))
         .collect()
 }
 
@@ -34,7 +42,7 @@ fn at_surface(
     model: &mut Model,
     around: &Surroundings<'_>,
     surface: usize,
-    (momentum, field): (ExprId, &[ExprId]),
+    (momentum, name, field): (ExprId, &str, &[ExprId]),
 ) -> String {
     let declared = &model.surfaces[surface];
     let what = match declared.law {
@@ -44,12 +52,12 @@ fn at_surface(
     let found = changes_at(model, around, surface, (momentum, "momentum"), Wanted::Any);
     let found = match found {
         Ok(found) => found.together(true),
-        Err(reason) => return format!("{what} may change its momentum: {reason}"),
+        Err(reason) => return format!("{what} may change {name}: {reason}"),
     };
     let what = what + surface_is_kept(model, around, surface, field);
     match found.verdict(true, Wording::default(), around.seed) {
-        Verdict::Proved(_) => format!("{what} keeps its momentum"),
-        Verdict::Undecided(reason) => format!("{what} may change its momentum: {reason}"),
+        Verdict::Proved(_) => format!("{what} keeps {name}"),
+        Verdict::Undecided(reason) => format!("{what} may change {name}: {reason}"),
         Verdict::Refuted(witness) => {
             let values = witness.values.iter();
             let values = values.map(|(name, value)| format!("{name} = {}", digits(*value)));
@@ -59,7 +67,7 @@ fn at_surface(
                 .as_ref()
                 .map_or(String::new(), |sample| sample.text());
             let jump = jump(model, around, surface, field);
-            format!("{what} changes its momentum{jump}: {values} at {at}")
+            format!("{what} changes {name}{jump}: {values} at {at}")
         }
     }
 }

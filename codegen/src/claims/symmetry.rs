@@ -35,6 +35,18 @@ fn kept(model: &mut Model, field: &[ExprId]) -> Change<'static> {
     Change::of_lagrangian("rate of L along its flow".to_owned(), rate)
 }
 
+/// The function whose total derivative the Lagrangian gains along the flow of a symmetry, as in a boost; `None` if it
+/// gains nothing. The momentum less this function is conserved between impacts.
+pub(super) fn gain(model: &mut Model, field: &[ExprId]) -> Option<ExprId> {
+    let has_positions = (model.constraints.iter()).any(|constraint| constraint.is_of_positions);
+    let rate = kept(model, field).rate;
+    let is_kept = has_positions || model.pool.zero_test(rate) == Zero::Proved;
+    match is_kept {
+        true => None,
+        false => gauge::antiderivative(model, rate),
+    }
+}
+
 /// The verdict on a symmetry, with remarks.
 pub(crate) fn check_symmetry(
     model: &mut Model,

@@ -78,7 +78,14 @@ fn resets_and_gauge_symmetries_are_examined() {
         lagrangian = (dot(x)^2 + dot(y)^2)/2 + B*x*dot(y); impacts { wall: y >= 0; } CLAIM }";
     let found = note(charge, "partial(x)");
     assert!(
-        found.contains("an impact at wall keeps the symmetry and keeps its momentum"),
+        found.contains("an impact at wall keeps the symmetry and keeps its momentum less the gain"),
+        "{found}"
+    );
+    // A boost: `t*dot(x) - x` is conserved, and the reset moves x.
+    let moved = particle("wall: y >= 0 => reset { dot(y) = -dot(y); x = x + 1; };");
+    let found = note(&moved, "t*partial(x)");
+    assert!(
+        found.contains("an impact at wall changes its momentum less the gain: momentum after = "),
         "{found}"
     );
 }
