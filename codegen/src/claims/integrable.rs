@@ -9,6 +9,7 @@
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity};
 
 use super::conserved::check_conserved;
+use super::defaults::Defaults;
 use super::evidence::{Vanishing, Wording, evidence};
 use super::examine::explicit;
 use super::expansion::{Part, Tangents, is_too_large};
@@ -59,7 +60,7 @@ pub(super) fn check_integrable(
     if let Some(refuted) = together.add(involution) {
         return refuted;
     }
-    let independence = are_independent(model, around, functions);
+    let independence = are_independent_at_defaults(model, around, functions);
     if let Some(refuted) = together.add(independence) {
         return refuted;
     }
@@ -90,6 +91,27 @@ fn of_surface(model: &Model, surface: usize, verdict: Verdict) -> Verdict {
     let name = &model.surfaces[surface].name.display;
     let help = format!("leave it out, or claim it for a scene that does not use `{name}`");
     Verdict::Refuted(Witness { help, ..witness })
+}
+
+/// The verdict on the independence of functions, for indeterminate parameters and at the declared defaults.
+fn are_independent_at_defaults(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    functions: &[Named<'_>],
+) -> Verdict {
+    let generic = are_independent(model, around, functions);
+    let values: Vec<ExprId> = functions.iter().map(|(value, _)| *value).collect();
+    let defaults = Defaults::of(model, &values);
+    if defaults.is_empty() || !matches!(generic, Verdict::Proved(_)) {
+        return generic;
+    }
+    let mut replaced = Vec::new();
+    for (value, written) in functions {
+        let value = model.pool.substitute(*value, defaults.replacements());
+        replaced.push((value, *written));
+    }
+    let declared = are_independent(model, around, &replaced);
+    defaults.confirmed(generic, declared)
 }
 
 /// The verdict on `df_1 ^ .. ^ df_k != 0` at almost all states: one component that is not 0 at one state proves it.

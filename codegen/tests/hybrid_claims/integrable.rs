@@ -130,6 +130,27 @@ fn functions_that_depend_on_each_other_are_refuted() {
     );
 }
 
+/// For almost all values of a parameter the functions are independent; at the declared one they are not.
+#[test]
+fn functions_that_depend_on_each_other_at_the_defaults_are_refuted() {
+    let free = |default: &str| {
+        format!(
+            "Free {{ coordinates {{ x; y; }} parameters {{ k = {default}; }}
+            lagrangian = (dot(x)^2 + dot(y)^2)/2; CLAIM }}"
+        )
+    };
+    let scaled = "integrable: dot(x), k*dot(y) + dot(x)^2";
+    check(&free("1"), scaled, True);
+    check(&free("0"), scaled, False("at the declared defaults k = 0,"));
+    let shifted = "integrable: dot(x), (k - 3)*dot(y)";
+    check(&free("2"), shifted, True);
+    check(
+        &free("3"),
+        shifted,
+        False("at the declared defaults k = 3,"),
+    );
+}
+
 #[test]
 fn impacts_that_change_a_function_are_refuted() {
     check(
