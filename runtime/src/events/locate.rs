@@ -7,6 +7,7 @@
 
 use super::crossing::Signs;
 use super::piece::Piece;
+use super::resolution::least_on;
 use super::stretches::{Region, Stretches};
 use crate::numbers::TaylorModel;
 
@@ -111,15 +112,6 @@ impl Floors {
             }
         }
     }
-}
-
-/// The least rounding at the ends and in the middle of a stretch: what is hidden by less than it may be passed over.
-fn least([left, right]: [f64; 2], rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
-    let places = [left, 0.5 * (left + right), right];
-    places
-        .into_iter()
-        .map(rounding)
-        .fold(f64::INFINITY, f64::min)
 }
 
 /// A fraction of the step with the gap there.
@@ -255,7 +247,7 @@ impl Line<'_> {
                         let low = self.place_at(right, &mut known);
                         let mut floor = floors.near(&stretches, self.rounding);
                         if low.gap >= -floor {
-                            floor = least(ends, self.rounding);
+                            floor = least_on(ends, &mut *self.rounding);
                         }
                         if low.gap < -floor {
                             return Self::sunk(
@@ -287,7 +279,7 @@ impl Line<'_> {
                         false => is_within(floor, &piece, gaps),
                     };
                     if is_flat.is_some() {
-                        floor = least(ends, self.rounding);
+                        floor = least_on(ends, &mut *self.rounding);
                         is_flat = is_within(floor, &piece, gaps);
                     }
                     match is_flat {

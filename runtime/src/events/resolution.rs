@@ -36,6 +36,15 @@ pub(crate) fn resolution<Sys: Impacting>(
     UNITS * (sum + (later - here).abs() / PART) + evaluation_error(system, surface, t, state)
 }
 
+/// The least rounding at the ends and in the middle of a stretch of a step. What is hidden by less may be passed over.
+pub(crate) fn least_on([left, right]: [f64; 2], rounding: impl FnMut(f64) -> f64) -> f64 {
+    let places = [left, 0.5 * (left + right), right];
+    places
+        .map(rounding)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// Width of the enclosure of a surface's gap at a state, which covers the rounding errors of its evaluation; 0 if it is
 /// not bounded.
 fn evaluation_error<Sys: Impacting>(

@@ -13,7 +13,7 @@ use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::first::{Onset, narrowed, onset};
-use crate::events::resolution::is_beyond_rounding;
+use crate::events::resolution::{is_beyond_rounding, least_on};
 use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
@@ -103,11 +103,8 @@ impl<Sys: Impacting> Watch<Sys> {
         // NOTE: a gap that is steep at one place has larger rounding errors there than elsewhere.
         let rounding =
             |part: f64, step: &mut _| 2.0 * self.rounding_at(surface, part, step) + drift;
-        let at_end = rounding(reach, step);
-        let least = [0.0, 0.5 * reach]
-            .map(|part| rounding(part, step))
-            .into_iter();
-        let floor = least.fold(at_end, f64::min).max(-4.0 * first);
+        let least = least_on([0.0, reach], |part| rounding(part, step));
+        let floor = least.max(-4.0 * first);
         let step = RefCell::new(step);
         let counts = |part: f64| {
             let step = &mut *step.borrow_mut();
