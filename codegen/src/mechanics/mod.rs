@@ -25,6 +25,7 @@ pub mod field;
 pub mod frame;
 pub mod impact;
 pub(crate) mod inverse;
+pub mod linkage;
 pub mod metric;
 mod narrow;
 mod rank;
@@ -41,6 +42,7 @@ pub use factors::FactorRow;
 pub use field::FieldTerms;
 pub use frame::{Frame, Unreduced};
 pub use impact::{SurfaceForm, kinks};
+pub use linkage::Linkage;
 pub use metric::MetricDerivatives;
 
 /// The expressions from which every emitted function is built, in the pool of the model.
@@ -48,6 +50,8 @@ pub use metric::MetricDerivatives;
 pub struct Derivation {
     /// Rows of the factorisation of the metric that are known as expressions.
     pub factors: Vec<Option<FactorRow>>,
+    /// The kinetic energy as squares of velocities that follow from one another, if this takes fewer operations.
+    pub linkage: Option<Linkage>,
     /// Momenta, forces and drift.
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
@@ -105,6 +109,7 @@ pub fn derive(model: &mut Model) -> Derivation {
             &varying,
         ),
         factors: factors::derive_factors(&mut model.pool, &metric_rows),
+        linkage: linkage::derive_linkage(model, &coordinates, &field.force),
         field,
         constraints,
         surfaces,

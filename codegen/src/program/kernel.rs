@@ -208,6 +208,9 @@ impl<'a> Kernel<'a> {
     }
 
     fn factor_metric(&mut self) -> Ldlt {
+        if let Some(linkage) = &self.derivation.linkage {
+            return self.eliminate_along(linkage);
+        }
         let n = self.dimension();
         let mut metric = Vec::with_capacity(n);
         let mut positive = Vec::with_capacity(n);
@@ -335,8 +338,18 @@ impl<'a> Kernel<'a> {
 
     /// `f = dL/dq + F`
     pub fn force(&mut self) -> Vec<Value> {
-        let force = self.derivation.field.force.clone();
-        self.values(&force)
+        match &self.derivation.linkage {
+            Some(linkage) => self.force_along(linkage),
+            None => self.values(&self.derivation.field.force),
+        }
+    }
+
+    /// `gdot qdot + Adot`
+    pub fn drift(&mut self) -> Vec<Value> {
+        match &self.derivation.linkage {
+            Some(linkage) => self.drift_along(linkage),
+            None => self.values(&self.derivation.field.drift),
+        }
     }
 
     /// `f - gdot qdot - Adot`

@@ -1,7 +1,8 @@
 //! Linear algebra as operations: sparse `L D L^T` of the metric, and solution for the multipliers by orthogonalisation.
 //!
 //! **Metric.** `g = L D L^T` with unit lower triangular `L`, in coordinate order. Structural zeros cost no operations.
-//! A pivot that is not known to be positive has a guard.
+//! A pivot that is not known to be positive has a guard. Where the velocities of the kinetic energy follow from one another, `L` is
+//! the elimination along them instead: see [`super::linked`].
 //!
 //! **Constraints.** Let `C = L^{-1} eta^T` (N rows, M columns), and let `<u, v> = u^T D^{-1} v` be the inner product,
 //! so that `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U` with unit upper triangular
@@ -11,20 +12,46 @@
 //! with few others, are an exception: see [`super::mass`].
 
 use super::builder::Builder;
+use super::linked::Elimination;
 use super::{Guard, Value};
 
 /// The factorisation `g = L D L^T`.
 #[derive(Debug)]
 pub struct Ldlt {
-    /// Entries of `L` below the diagonal: `below[i][j]`, `j < i`.
-    below: Vec<Vec<Value>>,
+    lower: Lower,
     /// `D_i`, N entries. Their product is `det g`.
     pub pivots: Vec<Value>,
     /// `1 / D_i`
     inverse_pivots: Vec<Value>,
 }
 
+/// The factor `L`.
+#[derive(Debug)]
+enum Lower {
+    /// Entries below the diagonal: `rows[i][j]`, `j < i`.
+    Rows(Vec<Vec<Value>>),
+    /// A product of the steps of an elimination. `L` is lower triangular in the order of the pivots.
+    Linked(Elimination),
+}
+
 impl Ldlt {
+    /// The factors that an elimination along a linkage gives.
+    pub fn of_elimination(
+        builder: &mut Builder,
+        elimination: Elimination,
+        pivots: Vec<Value>,
+    ) -> Self {
+        let inverse_pivots = pivots
+            .iter()
+            .map(|&pivot| builder.reciprocal(pivot))
+            .collect();
+        Self {
+            lower: Lower::Linked(elimination),
+            pivots,
+            inverse_pivots,
+        }
+    }
+
     /// Factorises a metric, given by `metric[i][j]` for `j <= i`. `positive[i]` is true if `metric[i][i]` is known to
     /// be positive.
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
@@ -58,7 +85,7 @@ impl Ldlt {
             below.push(row);
         }
         Self {
-            below,
+            lower: Lower::Rows(below),
             pivots,
             inverse_pivots,
         }
@@ -86,7 +113,7 @@ impl Ldlt {
     pub fn identity(builder: &mut Builder, n: usize) -> Self {
         let (zero, one) = (builder.zero(), builder.integer(1));
         Self {
-            below: (0..n).map(|i| vec![zero; i]).collect(),
+            lower: Lower::Rows((0..n).map(|i| vec![zero; i]).collect()),
             pivots: vec![one; n],
             inverse_pivots: vec![one; n],
         }
@@ -94,11 +121,15 @@ impl Ldlt {
 
     /// `L^{-1} b`
     pub fn forward(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
+        let below = match &self.lower {
+            Lower::Rows(below) => below,
+            Lower::Linked(elimination) => return elimination.forward(builder, b),
+        };
         let mut y: Vec<Value> = Vec::with_capacity(b.len());
         for (i, &right) in b.iter().enumerate() {
             let mut entry = right;
             for (j, &known) in y.iter().enumerate() {
-                entry = builder.sub_product(entry, self.below[i][j], known);
+                entry = builder.sub_product(entry, below[i][j], known);
             }
             y.push(entry);
         }
@@ -110,9 +141,13 @@ impl Ldlt {
         let mut x: Vec<Value> = (0..y.len())
             .map(|i| builder.mul(y[i], self.inverse_pivots[i]))
             .collect();
+        let below = match &self.lower {
+            Lower::Rows(below) => below,
+            Lower::Linked(elimination) => return elimination.backward(builder, &x),
+        };
         for i in (0..y.len()).rev() {
             for j in i + 1..y.len() {
-                x[i] = builder.sub_product(x[i], self.below[j][i], x[j]);
+                x[i] = builder.sub_product(x[i], below[j][i], x[j]);
             }
         }
         x
@@ -126,11 +161,15 @@ impl Ldlt {
 
     /// `L y`
     pub fn lower_times(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
+        let below = match &self.lower {
+            Lower::Rows(below) => below,
+            Lower::Linked(elimination) => return elimination.lower_times(builder, y),
+        };
         (0..y.len())
             .map(|i| {
                 let mut entry = y[i];
                 for j in 0..i {
-                    entry = builder.add_product(entry, self.below[i][j], y[j]);
+                    entry = builder.add_product(entry, below[i][j], y[j]);
                 }
                 entry
             })

@@ -117,6 +117,9 @@ impl<'a> Kernel<'a> {
 
     /// `g v`
     pub fn lower_vector(&mut self, v: &[Value]) -> Vec<Value> {
+        if let Some(linkage) = &self.derivation.linkage {
+            return self.lower_along(linkage, v);
+        }
         (0..self.dimension())
             .map(|i| {
                 let row = self.model.lagrangian.metric[i].clone();

@@ -140,8 +140,7 @@ fn report_motion(kernel: &mut Kernel<'_>, results: &mut Results) {
     let qdot = kernel.velocity();
     results.vector("qdot", qdot);
     let rate = motion::momentum_rate(kernel);
-    let drift = kernel.derivation.field.drift.clone();
-    let drift = kernel.values(&drift);
+    let drift = kernel.drift();
     let inertial: Vec<Value> = rate
         .iter()
         .zip(drift)

@@ -146,8 +146,7 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
 pub(super) fn acceleration(kernel: &mut Kernel<'_>, form: Form, motion: &[Value]) -> Vec<Value> {
     match form {
         Form::Global => {
-            let drift = kernel.derivation.field.drift.clone();
-            let drift = kernel.values(&drift);
+            let drift = kernel.drift();
             let inertial: Vec<Value> = motion
                 .iter()
                 .zip(drift)

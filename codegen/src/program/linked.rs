@@ -1,0 +1,337 @@
+//! The metric as operations along a linkage: factorisation, products, forces. The formulas are in [`crate::mechanics::linkage`].
+
+use std::collections::BTreeMap;
+
+use dalembert_expr::Rational;
+
+use super::builder::Builder;
+use super::kernel::Kernel;
+use super::linear::Ldlt;
+use super::{Guard, Value};
+use crate::mechanics::linkage::{Coefficient, Linkage, Part};
+
+/// The steps of an elimination. Vectors of the steps have an entry for each velocity and each derived velocity.
+#[derive(Debug)]
+pub struct Elimination {
+    /// Number of velocities, N.
+    velocities: usize,
+    /// Number of velocities and derived velocities.
+    parts: usize,
+    steps: Vec<Step>,
+}
+
+/// A step of an elimination.
+#[derive(Debug)]
+struct Step {
+    /// What is eliminated.
+    part: Part,
+    /// Of a derived velocity, its definition. Of a velocity, the entries of its column of `L`.
+    beside: Vec<(Part, Value)>,
+}
+
+impl Elimination {
+    /// `L^{-1} b`
+    pub fn forward(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
+        let mut carried = self.extended(builder, b);
+        for step in &self.steps {
+            self.carry(builder, step, carried[step.part], &mut carried);
+        }
+        carried.truncate(self.velocities);
+        carried
+    }
+
+    /// `L y`
+    pub fn lower_times(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
+        let mut carried = self.extended(builder, &[]);
+        let mut product = y.to_vec();
+        for step in &self.steps {
+            let part = step.part;
+            if part < self.velocities {
+                product[part] = builder.sub(y[part], carried[part]);
+                self.carry(builder, step, y[part], &mut carried);
+            } else {
+                self.carry(builder, step, carried[part], &mut carried);
+            }
+        }
+        product
+    }
+
+    /// `L^{-T} z`
+    pub fn backward(&self, builder: &mut Builder, z: &[Value]) -> Vec<Value> {
+        let mut x = self.extended(builder, z);
+        for step in self.steps.iter().rev() {
+            let mut entry = x[step.part];
+            for &(part, factor) in &step.beside {
+                entry = match step.part < self.velocities {
+                    true => builder.sub_product(entry, factor, x[part]),
+                    false => builder.add_product(entry, factor, x[part]),
+                };
+            }
+            x[step.part] = entry;
+        }
+        x.truncate(self.velocities);
+        x
+    }
+
+    /// The vector with zeros for the derived velocities.
+    fn extended(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
+        let mut extended = b.to_vec();
+        extended.resize(self.parts, builder.zero());
+        extended
+    }
+
+    /// Hands the entry `value` of a right-hand side on to the parts that are eliminated later.
+    fn carry(&self, builder: &mut Builder, step: &Step, value: Value, carried: &mut [Value]) {
+        for &(part, factor) in &step.beside {
+            carried[part] = match step.part < self.velocities {
+                true => builder.sub_product(carried[part], factor, value),
+                false => builder.add_product(carried[part], factor, value),
+            };
+        }
+    }
+}
+
+/// A quadratic form in velocities and derived velocities: entries `(a, b)` with `a <= b` of its matrix.
+#[derive(Default)]
+struct Quadratic(BTreeMap<(Part, Part), Value>);
+
+impl Quadratic {
+    fn add(&mut self, builder: &mut Builder, a: Part, b: Part, value: Value) {
+        let entry = self.0.entry((a.min(b), a.max(b)));
+        let entry = entry.or_insert_with(|| builder.zero());
+        *entry = builder.add(*entry, value);
+    }
+
+    /// Takes out the diagonal entry of a part, and its other entries.
+    fn take(&mut self, builder: &mut Builder, part: Part) -> (Value, Vec<(Part, Value)>) {
+        let diagonal = self.0.remove(&(part, part));
+        let diagonal = diagonal.unwrap_or_else(|| builder.zero());
+        let (mut beside, mut rest) = (Vec::new(), BTreeMap::new());
+        for ((a, b), value) in std::mem::take(&mut self.0) {
+            match (a == part, b == part) {
+                (true, _) => beside.push((b, value)),
+                (_, true) => beside.push((a, value)),
+                _ => drop(rest.insert((a, b), value)),
+            }
+        }
+        self.0 = rest;
+        (diagonal, beside)
+    }
+
+    /// Replaces a derived velocity by its definition.
+    fn substitute(&mut self, builder: &mut Builder, part: Part, definition: &[(Part, Value)]) {
+        let (diagonal, beside) = self.take(builder, part);
+        for (place, &(a, factor)) in definition.iter().enumerate() {
+            let scaled = builder.mul(diagonal, factor);
+            for &(b, other) in &definition[place..] {
+                let product = builder.mul(scaled, other);
+                self.add(builder, a, b, product);
+            }
+            for &(b, entry) in &beside {
+                let product = builder.mul(factor, entry);
+                self.add(builder, a, b, product);
+                if a == b {
+                    self.add(builder, a, b, product);
+                }
+            }
+        }
+    }
+
+    /// Eliminates a velocity. Gives its pivot and its column of `L`.
+    fn eliminate(&mut self, builder: &mut Builder, part: Part) -> (Value, Vec<(Part, Value)>) {
+        let (pivot, beside) = self.take(builder, part);
+        let inverse = builder.reciprocal(pivot);
+        let column: Vec<(Part, Value)> = beside
+            .iter()
+            .map(|&(a, entry)| (a, builder.mul(entry, inverse)))
+            .collect();
+        for (place, &(a, factor)) in column.iter().enumerate() {
+            for &(b, entry) in &beside[place..] {
+                let product = builder.mul(factor, entry);
+                let product = builder.neg(product);
+                self.add(builder, a, b, product);
+            }
+        }
+        (pivot, column)
+    }
+}
+
+impl Kernel<'_> {
+    /// The factorisation of the metric, in the order of the linkage.
+    pub(super) fn eliminate_along(&mut self, linkage: &Linkage) -> Ldlt {
+        let n = self.dimension();
+        let mut form = Quadratic::default();
+        for square in &linkage.squares {
+            let weight = self.value(square.weight.value);
+            form.add(&mut self.builder, square.part, square.part, weight);
+        }
+        let definitions = self.definitions(linkage);
+        let mut pivots = vec![self.builder.zero(); n];
+        let mut steps = Vec::with_capacity(linkage.order.len());
+        for &part in &linkage.order {
+            let beside = match part.checked_sub(n) {
+                Some(w) => {
+                    form.substitute(&mut self.builder, part, &definitions[w]);
+                    definitions[w].clone()
+                }
+                None => {
+                    let (pivot, column) = form.eliminate(&mut self.builder, part);
+                    self.builder.guard(Guard::Pivot {
+                        pivot: part,
+                        value: pivot,
+                    });
+                    pivots[part] = pivot;
+                    column
+                }
+            };
+            steps.push(Step { part, beside });
+        }
+        let elimination = Elimination {
+            velocities: n,
+            parts: n + linkage.derived.len(),
+            steps,
+        };
+        Ldlt::of_elimination(&mut self.builder, elimination, pivots)
+    }
+
+    /// The definitions of the derived velocities.
+    fn definitions(&mut self, linkage: &Linkage) -> Vec<Vec<(Part, Value)>> {
+        let derived = linkage.derived.iter();
+        derived
+            .map(|terms| {
+                let terms = terms.iter();
+                terms
+                    .map(|term| (term.part, self.value(term.factor.value)))
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Velocities `v`, then the derived velocities.
+    fn all_velocities_of(&mut self, linkage: &Linkage, v: &[Value]) -> Vec<Value> {
+        let mut x = v.to_vec();
+        for terms in self.definitions(linkage) {
+            let mut total = self.builder.zero();
+            for (part, factor) in terms {
+                total = self.builder.add_product(total, factor, x[part]);
+            }
+            x.push(total);
+        }
+        x
+    }
+
+    /// `y`, for velocities and derived velocities `x`.
+    fn adjoint(&mut self, linkage: &Linkage, x: &[Value]) -> Vec<Value> {
+        let n = self.dimension();
+        let mut y = vec![self.builder.zero(); x.len()];
+        for square in &linkage.squares {
+            let weight = self.value(square.weight.value);
+            y[square.part] = self.builder.mul(weight, x[square.part]);
+        }
+        for (w, terms) in self.definitions(linkage).into_iter().enumerate().rev() {
+            for (part, factor) in terms {
+                y[part] = self.builder.add_product(y[part], factor, y[n + w]);
+            }
+        }
+        y
+    }
+
+    /// `g v`
+    pub(super) fn lower_along(&mut self, linkage: &Linkage, v: &[Value]) -> Vec<Value> {
+        let x = self.all_velocities_of(linkage, v);
+        let mut y = self.adjoint(linkage, &x);
+        y.truncate(v.len());
+        y
+    }
+
+    /// `dL/dq + F`
+    pub(super) fn force_along(&mut self, linkage: &Linkage) -> Vec<Value> {
+        let qdot = self.velocity();
+        let x = self.all_velocities_of(linkage, &qdot);
+        let y = self.adjoint(linkage, &x);
+        // `sum_w y_w d_k a_wp` by k and p: a velocity multiplies the sum of what it multiplies.
+        let mut by_velocity: BTreeMap<(usize, Part), Value> = BTreeMap::new();
+        for (w, terms) in linkage.derived.iter().enumerate() {
+            for term in terms {
+                let adjoint = y[qdot.len() + w];
+                self.add_gradient(&mut by_velocity, term.part, adjoint, &term.factor);
+            }
+        }
+        let half = self.builder.number(Rational::HALF);
+        for square in &linkage.squares {
+            if !square.weight.gradient.is_empty() {
+                let weight = self.builder.mul(half, x[square.part]);
+                self.add_gradient(&mut by_velocity, square.part, weight, &square.weight);
+            }
+        }
+        let mut force = self.values(&linkage.force);
+        for ((k, part), factor) in by_velocity {
+            force[k] = self.builder.add_product(force[k], factor, x[part]);
+        }
+        force
+    }
+
+    fn add_gradient(
+        &mut self,
+        by_velocity: &mut BTreeMap<(usize, Part), Value>,
+        part: Part,
+        weight: Value,
+        coefficient: &Coefficient,
+    ) {
+        for entry in &coefficient.gradient {
+            let [k] = entry.index;
+            let derivative = self.value(entry.value);
+            let zero = self.builder.zero();
+            let sum = by_velocity.entry((k, part)).or_insert(zero);
+            *sum = self.builder.add_product(*sum, derivative, weight);
+        }
+    }
+
+    /// `gdot qdot + Adot`
+    pub(super) fn drift_along(&mut self, linkage: &Linkage) -> Vec<Value> {
+        let qdot = self.velocity();
+        let n = qdot.len();
+        let x = self.all_velocities_of(linkage, &qdot);
+        let y = self.adjoint(linkage, &x);
+        let rates: Vec<Vec<Value>> = linkage
+            .derived
+            .iter()
+            .map(|terms| {
+                terms
+                    .iter()
+                    .map(|term| self.value(term.factor.rate))
+                    .collect()
+            })
+            .collect();
+        let definitions = self.definitions(linkage);
+        // The derivatives of `x` by time at fixed velocities.
+        let mut moved = vec![self.builder.zero(); n];
+        for (terms, rates) in definitions.iter().zip(&rates) {
+            let mut total = self.builder.zero();
+            for (&(part, factor), &rate) in terms.iter().zip(rates) {
+                total = self.builder.add_product(total, rate, x[part]);
+                total = self.builder.add_product(total, factor, moved[part]);
+            }
+            moved.push(total);
+        }
+        // The derivatives of `y`.
+        let mut drift = vec![self.builder.zero(); x.len()];
+        for square in &linkage.squares {
+            let (weight, rate) = (square.weight.value, square.weight.rate);
+            let (weight, rate) = (self.value(weight), self.value(rate));
+            let steady = self.builder.mul(weight, moved[square.part]);
+            drift[square.part] = self.builder.add_product(steady, rate, x[square.part]);
+        }
+        for (w, (terms, rates)) in definitions.iter().zip(&rates).enumerate().rev() {
+            for (&(part, factor), &rate) in terms.iter().zip(rates) {
+                drift[part] = self.builder.add_product(drift[part], rate, y[n + w]);
+                drift[part] = self.builder.add_product(drift[part], factor, drift[n + w]);
+            }
+        }
+        let rest = self.values(&linkage.drift);
+        let pairs = drift.iter().zip(rest);
+        pairs
+            .map(|(&kinetic, rest)| self.builder.add(kinetic, rest))
+            .collect()
+    }
+}
