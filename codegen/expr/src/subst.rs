@@ -28,6 +28,33 @@ impl Pool {
         roots.iter().map(|root| results.get(*root)).collect()
     }
 
+    /// Replaces whole expressions: wherever one of `replacements` occurs as an operand of `roots`, or as a root, the
+    /// expression beside it stands instead. A sum that was merged into another sum is no operand of it.
+    pub fn replace_all(
+        &mut self,
+        roots: &[ExprId],
+        replacements: &[(ExprId, ExprId)],
+    ) -> Vec<ExprId> {
+        let reached = self.reachable(roots);
+        let mut results = Rebuilt::new(reached.last());
+        for id in reached {
+            let result = match replacements.iter().find(|(from, _)| *from == id) {
+                Some((_, to)) => *to,
+                None => {
+                    let mut is_affected = false;
+                    let node = self.node(id).clone();
+                    node.for_each_operand(|operand| is_affected |= results.get(operand) != operand);
+                    match is_affected {
+                        true => self.map_operands(node, |operand| results.get(operand)),
+                        false => id,
+                    }
+                }
+            };
+            results.set(id, result);
+        }
+        roots.iter().map(|root| results.get(*root)).collect()
+    }
+
     /// Copies expressions of the pool `from` into this pool. `replacements` maps symbols of `from` to expressions of
     /// this pool. `None` if it lacks a symbol that occurs in `roots`.
     pub fn import(
@@ -126,6 +153,21 @@ mod tests {
         let [id, x, y, expected] = fixture.read_all(["x^2 + sin(y)", "x", "y", "y^2 + sin(x)"]);
         let swap = [(fixture.symbol("x"), y), (fixture.symbol("y"), x)];
         assert_eq!(fixture.pool.substitute(id, &swap), expected);
+    }
+
+    #[test]
+    fn whole_expressions_are_replaced() {
+        let mut fixture = Fixture::new();
+        let [id, sum, by, expected] = fixture.read_all([
+            "cos(x + y)*x + (x + y)^2 + 3*sin(x + y + m)",
+            "x + y",
+            "m",
+            "cos(m)*x + m^2 + 3*sin(x + y + m)",
+        ]);
+        assert_eq!(
+            fixture.pool.replace_all(&[id, sum], &[(sum, by)]),
+            [expected, by]
+        );
     }
 
     #[test]

@@ -98,6 +98,9 @@ impl<'a> Kernel<'a> {
         for (i, coordinate) in model.coordinates.iter().enumerate() {
             kernel.bind(coordinate.q, Input::Coordinate(i));
         }
+        if let Some(linkage) = &derivation.linkage {
+            kernel.bind_positions(linkage);
+        }
         if matches!(arguments, Arguments::Velocities | Arguments::Both) {
             let inputs = (0..model.coordinates.len())
                 .map(|i| kernel.builder.input(Input::Velocity(i)))

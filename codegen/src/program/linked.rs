@@ -157,6 +157,28 @@ impl Quadratic {
 }
 
 impl Kernel<'_> {
+    /// Binds the symbols of the positions of derived velocities.
+    pub(super) fn bind_positions(&mut self, linkage: &Linkage) {
+        let mut positions = Vec::with_capacity(self.dimension() + linkage.derived.len());
+        for coordinate in &self.model.coordinates {
+            positions.push(Some(self.symbol(coordinate.q)));
+        }
+        for derived in &linkage.derived {
+            let value = derived.position.and_then(|symbol| {
+                let mut total = self.builder.zero();
+                for term in &derived.terms {
+                    let factor = self.value(term.factor.value);
+                    total = self
+                        .builder
+                        .add_product(total, factor, positions[term.part]?);
+                }
+                self.bind_value(symbol, total);
+                Some(total)
+            });
+            positions.push(value);
+        }
+    }
+
     /// The factorisation of the metric, in the order of the linkage.
     pub(super) fn eliminate_along(&mut self, linkage: &Linkage) -> Ldlt {
         let n = self.dimension();
@@ -198,8 +220,8 @@ impl Kernel<'_> {
     fn definitions(&mut self, linkage: &Linkage) -> Vec<Vec<(Part, Value)>> {
         let derived = linkage.derived.iter();
         derived
-            .map(|terms| {
-                let terms = terms.iter();
+            .map(|derived| {
+                let terms = derived.terms.iter();
                 terms
                     .map(|term| (term.part, self.value(term.factor.value)))
                     .collect()
@@ -246,15 +268,15 @@ impl Kernel<'_> {
 
     /// `dL/dq + F`
     pub(super) fn force_along(&mut self, linkage: &Linkage) -> Vec<Value> {
+        let n = self.dimension();
         let qdot = self.velocity();
         let x = self.all_velocities_of(linkage, &qdot);
         let y = self.adjoint(linkage, &x);
         // `sum_w y_w d_k a_wp` by k and p: a velocity multiplies the sum of what it multiplies.
-        let mut by_velocity: BTreeMap<(usize, Part), Value> = BTreeMap::new();
-        for (w, terms) in linkage.derived.iter().enumerate() {
-            for term in terms {
-                let adjoint = y[qdot.len() + w];
-                self.add_gradient(&mut by_velocity, term.part, adjoint, &term.factor);
+        let mut by_velocity: BTreeMap<(Part, Part), Value> = BTreeMap::new();
+        for (w, derived) in linkage.derived.iter().enumerate() {
+            for term in &derived.terms {
+                self.add_gradient(&mut by_velocity, term.part, y[n + w], &term.factor);
             }
         }
         let half = self.builder.number(Rational::HALF);
@@ -265,65 +287,84 @@ impl Kernel<'_> {
             }
         }
         let mut force = self.values(&linkage.force);
+        force.resize(x.len(), self.builder.zero());
+        for &(k, derivative) in &linkage.gradient {
+            let derivative = self.value(derivative);
+            force[k] = self.builder.add(force[k], derivative);
+        }
         for ((k, part), factor) in by_velocity {
             force[k] = self.builder.add_product(force[k], factor, x[part]);
         }
+        let definitions = self.definitions(linkage);
+        for (w, derived) in linkage.derived.iter().enumerate().rev() {
+            if derived.position.is_some() {
+                for &(part, factor) in &definitions[w] {
+                    force[part] = self.builder.add_product(force[part], factor, force[n + w]);
+                }
+            }
+        }
+        force.truncate(n);
         force
     }
 
     fn add_gradient(
         &mut self,
-        by_velocity: &mut BTreeMap<(usize, Part), Value>,
+        by_velocity: &mut BTreeMap<(Part, Part), Value>,
         part: Part,
         weight: Value,
         coefficient: &Coefficient,
     ) {
-        for entry in &coefficient.gradient {
-            let [k] = entry.index;
-            let derivative = self.value(entry.value);
+        for &(k, derivative) in &coefficient.gradient {
+            let derivative = self.value(derivative);
             let zero = self.builder.zero();
             let sum = by_velocity.entry((k, part)).or_insert(zero);
             *sum = self.builder.add_product(*sum, derivative, weight);
         }
     }
 
+    /// The derivative of a coefficient along the motion.
+    fn rate_along(&mut self, coefficient: &Coefficient, x: &[Value]) -> Value {
+        let mut rate = self.value(coefficient.by_time);
+        for &(k, derivative) in &coefficient.gradient {
+            let derivative = self.value(derivative);
+            rate = self.builder.add_product(rate, derivative, x[k]);
+        }
+        rate
+    }
+
     /// `gdot qdot + Adot`
     pub(super) fn drift_along(&mut self, linkage: &Linkage) -> Vec<Value> {
+        let n = self.dimension();
         let qdot = self.velocity();
-        let n = qdot.len();
         let x = self.all_velocities_of(linkage, &qdot);
         let y = self.adjoint(linkage, &x);
-        let rates: Vec<Vec<Value>> = linkage
-            .derived
-            .iter()
-            .map(|terms| {
-                terms
-                    .iter()
-                    .map(|term| self.value(term.factor.rate))
-                    .collect()
-            })
-            .collect();
         let definitions = self.definitions(linkage);
+        let mut rates: Vec<Vec<Value>> = Vec::with_capacity(definitions.len());
         // The derivatives of `x` by time at fixed velocities.
         let mut moved = vec![self.builder.zero(); n];
-        for (terms, rates) in definitions.iter().zip(&rates) {
+        for (derived, definition) in linkage.derived.iter().zip(&definitions) {
+            let terms = derived.terms.iter();
+            let along = terms
+                .map(|term| self.rate_along(&term.factor, &x))
+                .collect::<Vec<_>>();
             let mut total = self.builder.zero();
-            for (&(part, factor), &rate) in terms.iter().zip(rates) {
+            for (&(part, factor), &rate) in definition.iter().zip(&along) {
                 total = self.builder.add_product(total, rate, x[part]);
                 total = self.builder.add_product(total, factor, moved[part]);
             }
             moved.push(total);
+            rates.push(along);
         }
         // The derivatives of `y`.
         let mut drift = vec![self.builder.zero(); x.len()];
         for square in &linkage.squares {
-            let (weight, rate) = (square.weight.value, square.weight.rate);
-            let (weight, rate) = (self.value(weight), self.value(rate));
+            let weight = self.value(square.weight.value);
+            let rate = self.rate_along(&square.weight, &x);
             let steady = self.builder.mul(weight, moved[square.part]);
             drift[square.part] = self.builder.add_product(steady, rate, x[square.part]);
         }
-        for (w, (terms, rates)) in definitions.iter().zip(&rates).enumerate().rev() {
-            for (&(part, factor), &rate) in terms.iter().zip(rates) {
+        for (w, (definition, rates)) in definitions.iter().zip(&rates).enumerate().rev() {
+            for (&(part, factor), &rate) in definition.iter().zip(rates) {
                 drift[part] = self.builder.add_product(drift[part], rate, y[n + w]);
                 drift[part] = self.builder.add_product(drift[part], factor, drift[n + w]);
             }

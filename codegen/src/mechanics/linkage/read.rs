@@ -12,8 +12,8 @@ const NEAR: usize = 4;
 
 /// A Lagrangian `1/2 sum_s c_s x_s^2 + rest`.
 pub(super) struct Written {
-    /// Terms of the derived velocities.
-    pub derived: Vec<Vec<(Part, ExprId)>>,
+    /// The derived velocities, as forms in the velocities and by their definitions.
+    pub derived: Vec<(Form, Vec<(Part, ExprId)>)>,
     /// `x_s` and `c_s`.
     pub squares: Vec<(Part, ExprId)>,
     /// What is linear in the velocities, or independent of them.
@@ -21,7 +21,7 @@ pub(super) struct Written {
 }
 
 /// Coefficients of a linear form by the index of the velocity.
-type Form = BTreeMap<usize, ExprId>;
+pub(super) type Form = BTreeMap<usize, ExprId>;
 
 /// Reads a Lagrangian; `None` if a quadratic term is no square of a homogeneous linear form.
 pub(super) fn read(pool: &mut Pool, qdot: &[SymbolId], lagrangian: ExprId) -> Option<Written> {
@@ -46,7 +46,7 @@ pub(super) fn read(pool: &mut Pool, qdot: &[SymbolId], lagrangian: ExprId) -> Op
         let part = forms.part(form);
         weights.entry(part).or_default().push(weight);
     }
-    let derived = forms.derived.into_iter().map(|(_, terms)| terms).collect();
+    let derived = forms.derived;
     let weights = weights.into_iter();
     Some(Written {
         derived,

@@ -14,13 +14,20 @@ pub(super) fn is_shorter(model: &Model, linkage: &Linkage, force: &[ExprId]) -> 
     let rows = model.lagrangian.metric.iter().enumerate();
     let metric: Vec<ExprId> = rows.flat_map(|(i, row)| row[..=i].to_vec()).collect();
     let by_metric = operations(pool, &[&metric, force].concat()) + elimination(pool, model, n);
-    let terms = linkage.derived.iter().flatten().map(|term| &term.factor);
+    let terms = linkage.derived.iter().flat_map(|derived| &derived.terms);
+    let terms = terms.map(|term| &term.factor);
     let coefficients = terms.chain(linkage.squares.iter().map(|square| &square.weight));
     let mut parts = linkage.force.clone();
+    parts.extend(linkage.gradient.iter().map(|(_, derivative)| *derivative));
     let mut products = 0;
     for coefficient in coefficients {
         parts.push(coefficient.value);
-        parts.extend(coefficient.gradient.iter().map(|entry| entry.value));
+        parts.extend(
+            coefficient
+                .gradient
+                .iter()
+                .map(|(_, derivative)| *derivative),
+        );
         products += 3 + 2 * coefficient.gradient.len();
     }
     let by_linkage = operations(pool, &parts) + products + along(linkage, n);
@@ -68,7 +75,7 @@ fn along(linkage: &Linkage, n: usize) -> usize {
         let beside = std::mem::take(&mut met[part]);
         let parts: BTreeSet<Part> = match part.checked_sub(n) {
             Some(w) => {
-                let terms = linkage.derived[w].iter().map(|term| term.part);
+                let terms = linkage.derived[w].terms.iter().map(|term| term.part);
                 let terms: BTreeSet<Part> = terms.collect();
                 products += terms.len() * (terms.len() + 1 + beside.len());
                 terms.union(&beside).copied().collect()
