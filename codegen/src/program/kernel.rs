@@ -212,7 +212,7 @@ impl<'a> Kernel<'a> {
 
     fn factor_metric(&mut self) -> Ldlt {
         if let Some(linkage) = &self.derivation.linkage {
-            return self.eliminate_along(linkage);
+            return self.eliminate_along(linkage, &[]);
         }
         let n = self.dimension();
         let mut metric = Vec::with_capacity(n);
@@ -255,6 +255,9 @@ impl<'a> Kernel<'a> {
 
     /// `g^{-1} b`
     pub fn raise(&mut self, b: &[Value]) -> Vec<Value> {
+        if let (None, Some(linkage)) = (&self.ldlt, &self.derivation.linkage) {
+            self.ldlt = Some(self.eliminate_along(linkage, b));
+        }
         self.with_ldlt(|builder, ldlt| ldlt.solve(builder, b))
     }
 

@@ -8,7 +8,7 @@ use super::builder::Builder;
 use super::kernel::Kernel;
 use super::linear::Ldlt;
 use super::{Guard, Value};
-use crate::mechanics::linkage::{Coefficient, Linkage, Part};
+use crate::mechanics::linkage::{Coefficient, Derived, Linkage, Part};
 
 /// The steps of an elimination. Vectors of the steps have an entry for each velocity and each derived velocity.
 #[derive(Debug)]
@@ -34,7 +34,12 @@ impl Elimination {
     pub fn forward(&self, builder: &mut Builder, b: &[Value]) -> Vec<Value> {
         let mut carried = self.extended(builder, b);
         for step in &self.steps {
-            self.carry(builder, step, carried[step.part], &mut carried);
+            step.carry(
+                builder,
+                step.part < self.velocities,
+                carried[step.part],
+                &mut carried,
+            );
         }
         carried.truncate(self.velocities);
         carried
@@ -48,9 +53,9 @@ impl Elimination {
             let part = step.part;
             if part < self.velocities {
                 product[part] = builder.sub(y[part], carried[part]);
-                self.carry(builder, step, y[part], &mut carried);
+                step.carry(builder, true, y[part], &mut carried);
             } else {
-                self.carry(builder, step, carried[part], &mut carried);
+                step.carry(builder, false, carried[part], &mut carried);
             }
         }
         product
@@ -79,11 +84,13 @@ impl Elimination {
         extended.resize(self.parts, builder.zero());
         extended
     }
+}
 
+impl Step {
     /// Hands the entry `value` of a right-hand side on to the parts that are eliminated later.
-    fn carry(&self, builder: &mut Builder, step: &Step, value: Value, carried: &mut [Value]) {
-        for &(part, factor) in &step.beside {
-            carried[part] = match step.part < self.velocities {
+    fn carry(&self, builder: &mut Builder, is_velocity: bool, value: Value, carried: &mut [Value]) {
+        for &(part, factor) in &self.beside {
+            carried[part] = match is_velocity {
                 true => builder.sub_product(carried[part], factor, value),
                 false => builder.add_product(carried[part], factor, value),
             };
@@ -118,19 +125,28 @@ impl Quadratic {
         (diagonal, beside)
     }
 
-    /// Replaces a derived velocity by its definition.
+    /// Replaces a derived velocity `x = sum_p a_p x_p` by its definition. With the diagonal entry `alpha` and the other entries
+    /// `beta_p` of x, the entry (p, r) grows by `alpha a_p a_r + a_p beta_r + a_r beta_p`.
     fn substitute(&mut self, builder: &mut Builder, part: Part, definition: &[(Part, Value)]) {
         let (diagonal, beside) = self.take(builder, part);
+        let entries: BTreeMap<Part, Value> = beside.iter().copied().collect();
+        let zero = builder.zero();
         for (place, &(a, factor)) in definition.iter().enumerate() {
-            let scaled = builder.mul(diagonal, factor);
-            for &(b, other) in &definition[place..] {
-                let product = builder.mul(scaled, other);
+            let own = entries.get(&a).copied().unwrap_or(zero);
+            let whole = builder.add_product(own, diagonal, factor);
+            let doubled = builder.add(whole, own);
+            let product = builder.mul(factor, doubled);
+            self.add(builder, a, a, product);
+            for &(b, other) in &definition[place + 1..] {
+                let product = builder.mul(other, whole);
+                self.add(builder, a, b, product);
+                let entry = entries.get(&b).copied().unwrap_or(zero);
+                let product = builder.mul(factor, entry);
                 self.add(builder, a, b, product);
             }
             for &(b, entry) in &beside {
-                let product = builder.mul(factor, entry);
-                self.add(builder, a, b, product);
-                if a == b {
+                if !definition.iter().any(|(part, _)| *part == b) {
+                    let product = builder.mul(factor, entry);
                     self.add(builder, a, b, product);
                 }
             }
@@ -179,22 +195,25 @@ impl Kernel<'_> {
         }
     }
 
-    /// The factorisation of the metric, in the order of the linkage.
-    pub(super) fn eliminate_along(&mut self, linkage: &Linkage) -> Ldlt {
+    /// The factorisation of the metric, in the order of the linkage. The operations of `L^{-1} b` stand between those of the steps,
+    /// because a processor then carries out both sequences at once.
+    pub(super) fn eliminate_along(&mut self, linkage: &Linkage, b: &[Value]) -> Ldlt {
         let n = self.dimension();
+        let mut carried = b.to_vec();
+        carried.resize(n + linkage.derived.len(), self.builder.zero());
         let mut form = Quadratic::default();
         for square in &linkage.squares {
             let weight = self.value(square.weight.value);
             form.add(&mut self.builder, square.part, square.part, weight);
         }
-        let definitions = self.definitions(linkage);
         let mut pivots = vec![self.builder.zero(); n];
         let mut steps = Vec::with_capacity(linkage.order.len());
         for &part in &linkage.order {
             let beside = match part.checked_sub(n) {
                 Some(w) => {
-                    form.substitute(&mut self.builder, part, &definitions[w]);
-                    definitions[w].clone()
+                    let definition = self.definition(&linkage.derived[w]);
+                    form.substitute(&mut self.builder, part, &definition);
+                    definition
                 }
                 None => {
                     let (pivot, column) = form.eliminate(&mut self.builder, part);
@@ -206,7 +225,9 @@ impl Kernel<'_> {
                     column
                 }
             };
-            steps.push(Step { part, beside });
+            let step = Step { part, beside };
+            step.carry(&mut self.builder, part < n, carried[part], &mut carried);
+            steps.push(step);
         }
         let elimination = Elimination {
             velocities: n,
@@ -216,17 +237,18 @@ impl Kernel<'_> {
         Ldlt::of_elimination(&mut self.builder, elimination, pivots)
     }
 
-    /// The definitions of the derived velocities.
+    /// The definition of a derived velocity.
+    fn definition(&mut self, derived: &Derived) -> Vec<(Part, Value)> {
+        let terms = derived.terms.iter();
+        terms
+            .map(|term| (term.part, self.value(term.factor.value)))
+            .collect()
+    }
+
+    /// The definitions of all derived velocities.
     fn definitions(&mut self, linkage: &Linkage) -> Vec<Vec<(Part, Value)>> {
         let derived = linkage.derived.iter();
-        derived
-            .map(|derived| {
-                let terms = derived.terms.iter();
-                terms
-                    .map(|term| (term.part, self.value(term.factor.value)))
-                    .collect()
-            })
-            .collect()
+        derived.map(|derived| self.definition(derived)).collect()
     }
 
     /// Velocities `v`, then the derived velocities.

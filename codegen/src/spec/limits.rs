@@ -28,7 +28,7 @@ pub const NUMBER_BITS: u64 = 4096;
 /// Nodes of the shared expressions.
 pub const EXPRESSIONS: usize = 1 << 20;
 /// Steps of algebra for one model: one for each expression, for each of its operands and for each word of its numbers.
-pub const STEPS: u64 = 1 << 21;
+pub const STEPS: u64 = 1 << 22;
 /// Members of a family of definitions, and terms of a `sum`.
 pub const FAMILY: i64 = 4096;
 /// Subexpressions visited while definitions and sums are expanded.
