@@ -199,7 +199,7 @@ const WITHOUT_MODEL: &str = "use dalembert as _;\nfn main() {}\n";
 /// A program that simulates a model from its declared initial values, projected on the constraints.
 fn program(name: &str, source: &str) -> String {
     format!(
-        "use dalembert::{{Described, Dop853, Scene, Simulation, System, Tolerance}};\n\
+        "use dalembert::{{Dop853, Instance, Scene, Simulation, System, Tolerance}};\n\
          dalembert::model! {{ {source} }}\n\
          fn main() {{\n\
              let system = {name}::default();\n\

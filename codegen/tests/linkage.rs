@@ -142,7 +142,8 @@ fn operations_grow_with_the_number_of_links() {
     }
 }
 
-/// Short chains, sparse metrics, and energies that are no sums of squares keep the factorisation of the metric.
+/// Short chains, sparse metrics, energies that are no sums of squares, and systems whose rates are enclosed along each step keep
+/// the factorisation of the metric.
 #[test]
 fn the_metric_is_factorised_where_that_is_shorter() {
     let products = "Pair { const N = 6; coordinates { x[N]; } parameters { m > 0 = 1; k = 0.1; }
@@ -150,7 +151,8 @@ fn the_metric_is_factorised_where_that_is_shorter() {
     let places =
         "Places { const N = 8; coordinates { x[N]; y[N]; } parameters { m > 0 = 1; g = 9.81; }
         lagrangian = sum(i in 1..=N: m/2*(dot(x[i])^2 + dot(y[i])^2) - m*g*y[i]); }";
-    for text in [&absolute(4, ""), products, places] {
+    let root = absolute(8, "forces { spring: -sqrt(1 + X[2]^2)*d(theta[2]); }");
+    for text in [&absolute(4, ""), products, places, &root] {
         assert!(
             mechanics::derive(&mut checked(text)).linkage.is_none(),
             "{text}"

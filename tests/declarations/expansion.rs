@@ -270,7 +270,7 @@ fn operations(source: &str) -> usize {
 }
 
 #[test]
-fn the_chain_grows_no_faster_than_its_factorisation() {
+fn the_chain_grows_with_the_number_of_its_links() {
     let sources = [
         (2.0_f64, shipped("chain2")),
         (4.0, shipped("chain4")),
@@ -293,14 +293,17 @@ fn the_chain_grows_no_faster_than_its_factorisation() {
     };
     let (work, time) = (power(|row| row.1), power(|row| row.2));
     println!("fitted between N = 4 and 16: operations ~ N^{work:.2}, expansion time ~ N^{time:.2}");
-    assert!(work <= 3.0, "operations grow like N^{work}");
+    assert!(work <= 1.2, "operations grow like N^{work}");
     assert!(time <= 3.3, "expansion time grows like N^{time}");
 }
 
 #[test]
 fn a_model_that_is_too_large_is_refused_with_its_size() {
     let source = shipped("chain16");
-    let larger = source.replace("16", "48");
+    let longer = source.replace("16", "48");
+    // The metric is factorised where rates are enclosed along each step.
+    let larger = longer.replace("m*g*Y[i])", "m*g*Y[i]) - sqrt(1 + X[N]^2)");
+    assert_ne!(larger, longer);
     let _alone = ALONE.lock();
     let refused = try_expand(larger.parse().expect("tokens")).expect_err("48 links");
     let message = refused.iter().next().expect("a message").message();
@@ -308,5 +311,5 @@ fn a_model_that_is_too_large_is_refused_with_its_size() {
         message.contains("operations; the limit is 50000"),
         "{message}"
     );
-    assert!(try_expand(source.replace("16", "24").parse().expect("tokens")).is_ok());
+    assert!(try_expand(longer.parse().expect("tokens")).is_ok());
 }

@@ -100,16 +100,18 @@ pub fn derive(model: &mut Model) -> Derivation {
     let metric_rows = model.lagrangian.metric.clone();
     let mut varying = [&coordinates.q[..], &coordinates.qdot].concat();
     varying.push(coordinates.time);
+    let rates = model.field.as_ref().unwrap_or(&field.force);
+    let can_be_narrow = narrow::can_be_narrow(&model.pool, rates, &varying);
     Derivation {
         can_lose_rank: !model.is_nonlinear()
             && !rank::is_constant(&model.pool, &coordinates.q, &constraints),
-        can_be_narrow: narrow::can_be_narrow(
-            &model.pool,
-            model.field.as_ref().unwrap_or(&field.force),
-            &varying,
-        ),
+        can_be_narrow,
         factors: factors::derive_factors(&mut model.pool, &metric_rows),
-        linkage: linkage::derive_linkage(model, &coordinates, &field.force),
+        linkage: match can_be_narrow {
+            // NOTE: rates along a step are then enclosed. Intervals grow along the links more than in the metric.
+            true => None,
+            false => linkage::derive_linkage(model, &coordinates, &field.force),
+        },
         field,
         constraints,
         surfaces,
