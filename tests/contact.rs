@@ -585,3 +585,39 @@ fn a_wall_takes_over_from_the_surface_that_held_the_motion() {
         }
     }
 }
+
+/// A ball on a floor that rises with constant acceleration. The gap rate that is left at the end of the hops is a rounding error.
+#[test]
+fn hops_on_a_rising_floor_end_in_a_hold_at_their_limit() {
+    static PLAIN: Text = Text::new(
+        "Ball { coordinates { y; } lagrangian = dot(y)^2/2 - 1.314*y;
+         impacts { floor: y - 0.355*t - 0.149*t^2 >= 0 => newton(0.8); } }",
+    );
+    static CURVED: Text = Text::new(
+        "Ball { coordinates { y; } lagrangian = dot(y)^2/2 - 1.314*y;
+         impacts { floor: exp(y - 0.355*t - 0.149*t^2) - 1 >= 0 => newton(0.8); } }",
+    );
+    let (height, rate, g) = (1.141, -0.446 - 0.355, 1.314 + 2.0 * 0.149);
+    let arrival = f64::sqrt(rate * rate + 2.0 * g * height);
+    let first = (rate + arrival) / g;
+    let limit = first + 2.0 * arrival / g * 0.8 / (1.0 - 0.8);
+    for floor in [PLAIN.model(), CURVED.model()] {
+        for &integrator in Integrator::every() {
+            for tol in [1e-6, 1e-8] {
+                let course = Course::new(&floor, &[height], &[-0.446], limit + 1.0).tol(tol);
+                let end = course
+                    .step(limit / 512.0)
+                    .resting()
+                    .run(Setting::free(integrator));
+                let case = format!("{}, {tol:e}: {:?}", integrator.name(), end.holds);
+                assert_eq!(end.outcome, Outcome::Done, "{case}");
+                let [hold] = &end.holds[..] else {
+                    panic!("{case}");
+                };
+                let found = hold.accumulation.expect("a limit");
+                assert!((found - limit).abs() < 1e-10 * limit, "{case}: {limit}");
+                assert!(hold.t <= limit && limit - hold.t < 1e-5, "{case}: {limit}");
+            }
+        }
+    }
+}

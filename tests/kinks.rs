@@ -332,3 +332,74 @@ fn a_motion_rises_from_a_kink_by_its_acceleration() {
         }
     }
 }
+
+/// A point on a line, with a wall at 0.
+macro_rules! wall {
+    ($gap:literal) => {
+        Text::new(concat!(
+            "Wall { coordinates { x; } lagrangian = dot(x)^2/2; impacts { wall: ",
+            $gap,
+            " >= 0; } }"
+        ))
+    };
+}
+
+/// The gap has no derivative in numbers where it vanishes. Its limits from the side of the motion give the impact.
+#[test]
+fn a_kink_on_the_surface_hides_no_impact() {
+    let walls = [
+        wall!("x + abs(x^3)"),
+        wall!("x*(1 + abs(x))"),
+        wall!("x + abs(x)^(3/2)"),
+        wall!("tanh(x)*(1 + abs(x))"),
+        wall!("x + sqrt(x^4)"),
+        wall!("2*x + abs(x)"),
+        wall!("3*x - abs(x)"),
+    ];
+    for (index, wall) in walls.iter().enumerate() {
+        let wall = wall.model();
+        for &integrator in Integrator::every() {
+            for (from, speed) in [(1.0, 0.7), (1.0, 1.0), (0.123, 0.3), (0.0, 1.0)] {
+                let course = Course::new(&wall, &[from], &[-speed], 3.0).step(1.0 / 16.0);
+                let end = course.run(Setting::free(integrator));
+                let case = format!("{index}, {}, {from}: {:?}", integrator.name(), end.outcome);
+                assert_eq!(
+                    (end.outcome, end.counters.impacts),
+                    (Outcome::Done, 1),
+                    "{case}"
+                );
+                let errors = [end.q[0] - (3.0 * speed - from), end.qdot[0] - speed];
+                assert!(
+                    errors.iter().all(|error| error.abs() < 1e-12),
+                    "{case}: {errors:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_kink_on_a_round_surface_hides_no_impact() {
+    static DISK: Text = Text::new(
+        "Disk { coordinates { x; y; } let h = x^2 + y^2 - 1; lagrangian = (dot(x)^2 + dot(y)^2)/2;
+         impacts { disk: h*(1 + abs(h)) >= 0; } }",
+    );
+    let disk = DISK.model();
+    let depth = f64::sqrt(0.91);
+    for &integrator in Integrator::every() {
+        let course = Course::new(&disk, &[2.0, 0.3], &[-1.0, 0.0], 5.0).tol(1e-6);
+        let end = course.step(1.0 / 16.0).run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), end.outcome);
+        assert_eq!(
+            (end.outcome, end.counters.impacts),
+            (Outcome::Done, 1),
+            "{case}"
+        );
+        // The velocity after it is `v - 2 (v.n) n` with the normal `n = (sqrt(0.91), 0.3)`.
+        let errors = [end.qdot[0] + 1.0 - 2.0 * 0.91, end.qdot[1] - 0.6 * depth];
+        assert!(
+            errors.iter().all(|error| error.abs() < 1e-12),
+            "{case}: {errors:?}"
+        );
+    }
+}

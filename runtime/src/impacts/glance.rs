@@ -69,20 +69,24 @@ impl<G: StateVector> Glance<G> {
         self.rates().map(|rates| rates.as_slice()[surface])
     }
 
-    /// True if the surface is approached and its gap reaches 0 at the end of the step, within the rounding of times.
+    /// True if the surface is approached and its gap reaches 0 at the end of the step, within the rounding of times; also if the gap is
+    /// 0 there and has no rate.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {
         let gap = self.gaps.as_slice()[surface];
-        self.rate(surface)
-            .is_some_and(|rate| rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * self.latest * -rate)
+        self.rate(surface).is_some_and(|rate| match rate.is_nan() {
+            true => gap == 0.0,
+            false => rate < 0.0 && gap >= 0.0 && gap <= SAME_TIME * self.latest * -rate,
+        })
     }
 }
 
-/// Returns the gaps if all are finite. Otherwise the error has the index `state_len + surface` of the first gap that is
-/// not.
+/// Returns the gaps if all are finite, or too large for a number. Otherwise the error has the index `state_len + surface`
+/// of the first gap that is not.
 #[inline(always)]
 pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
-    match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
+    let is_gap = |gap: &f64| gap.is_finite() || *gap == f64::INFINITY;
+    match gaps.as_slice().iter().position(|gap| !is_gap(gap)) {
         Some(surface) => Err(Outcome::NonFinite {
             component: system.state_len() + surface,
         }),

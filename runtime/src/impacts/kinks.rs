@@ -1,16 +1,22 @@
-//! Kinks of the gaps of surfaces that hold the motion. The gap rate may jump there, so that the surface acts anew.
+//! Kinks of gaps. Where a held surface has one, the gap rate may jump, so that the surface acts anew. On a surface that is hit, the side
+//! from which the motion comes decides.
 
 use core::cell::RefCell;
 
+use super::hits::Hits;
 use super::sides::{UNITS, about};
 use super::watch::Watch;
 use crate::contract::{Along, Impacting};
 use crate::effects::{Moment, StepView};
 use crate::events::first::onset_among;
 use crate::integrate::Stepper;
+use crate::math;
 use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
+
+/// Number of places before a kink that are tried, each farther from it by this factor.
+const ASIDE: (u32, f64) = (8, 4.0);
 
 /// Smallest fraction of a step between two kinks that are told apart.
 const LEAST_STRETCH: f64 = 1e-6;
@@ -26,6 +32,12 @@ const STRETCHES: u32 = 256;
 
 /// Length of a path, in units of the rounding errors of the positions, below which the kinks at its ends are one.
 const RETURNS: f64 = 32.0;
+
+/// A state within rounding of another one, with its gap rates.
+pub(super) struct Beside<Sys: Impacting> {
+    pub(super) state: Sys::State,
+    pub(super) rates: Sys::Gaps,
+}
 
 impl<Sys: Impacting> Watch<Sys> {
     /// The first fraction of the step, up to `reach`, at which the gap of a surface that holds the motion has passed a
@@ -155,6 +167,42 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
         Ok(Some(rates))
+    }
+
+    /// The state within rounding before this one on the motion, with its gap rates, if a surface at hand has no gap rate here but has
+    /// one there. A gap such as `x + abs(x^3)` has no derivative in numbers exactly on the surface.
+    pub(super) fn before_kink(
+        &self,
+        hits: &Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &Moment<'_, Sys>,
+    ) -> Result<Option<Beside<Sys>>, Outcome> {
+        let lacks = |rates: &Sys::Gaps| {
+            let mut surfaces = 0..rates.count();
+            surfaces.any(|surface| hits.is_at_hand(surface) && rates.as_slice()[surface].is_nan())
+        };
+        if !lacks(rates) {
+            return Ok(None);
+        }
+        let (t, system) = (now.t, now.system);
+        let qdot = system.velocity(t, now.state)?;
+        let mut way = 2.0 * f64::EPSILON;
+        for _ in 0..ASIDE.0 {
+            let mut q = system.position(now.state);
+            let moved = q.as_mut_slice().iter_mut().zip(qdot.as_slice());
+            for ((q, &v), size) in moved.zip(self.sizes.as_slice()) {
+                if v != 0.0 {
+                    *q -= (way * math::larger(size.abs(), q.abs())).copysign(v);
+                }
+            }
+            let state = system.state_moved(now.state, t, &q, &qdot)?;
+            let rates = system.gap_rates(t, &state)?;
+            if !lacks(&rates) {
+                return Ok(Some(Beside { state, rates }));
+            }
+            way *= ASIDE.1;
+        }
+        Ok(None)
     }
 
     /// True if the gap of a surface that holds the motion has a kink within [`NEAR`] rounding errors of a state.

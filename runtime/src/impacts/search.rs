@@ -94,7 +94,14 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Found::Unfinished(part) => (part, None),
                 Found::Nothing if self.is_due(surface, glance) && is_active(surface, step, 1.0) => {
-                    (1.0, Some(last_rate))
+                    let rate = match last_rate.is_nan() {
+                        true => rate_before(surface, step, 1.0)?,
+                        false => last_rate,
+                    };
+                    if rate.is_nan() || rate >= 0.0 {
+                        continue;
+                    }
+                    (1.0, Some(rate))
                 }
                 Found::Nothing => continue,
             };
@@ -333,10 +340,14 @@ impl<Sys: Impacting> Watch<Sys> {
         let Some(slope) = start.slope else {
             return false;
         };
-        if part == 0.0 || slope > 0.0 {
-            return part == 0.0;
+        if part == 0.0 {
+            return true;
         }
         let rounding = self.rounding_at(surface, part, step);
+        if slope > 0.0 {
+            // A rate that raises the gap by no more than its rounding error may itself be one.
+            return slope * part <= rounding;
+        }
         step.counters.enclosures += 1;
         self.path.enclose();
         let (path, part) = (&self.path, [0.0, part]);
@@ -373,6 +384,10 @@ impl<Sys: Impacting> Watch<Sys> {
                 let there = if before > 0.0 { before } else { after };
                 (there, rate_at(surface, step, there)?)
             }
+        };
+        let rate = match rate.is_nan() {
+            true => rate_before(surface, step, there)?,
+            false => rate,
         };
         let falls = |part| Ok::<_, Outcome>(rate_at(surface, step, part)? < 0.0);
         let is_approached = rate < 0.0 || falls(before)? || falls(after)?;
@@ -560,6 +575,20 @@ fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
     let place = Place::new(step.system, t, state, evaluations).ok()?;
     let exists = place.rates.is_finite() && step.system.outside_chart(&state).is_none();
     exists.then_some(place)
+}
+
+/// The gap rate shortly before a fraction of a step where it has none; NaN if it has none there either.
+fn rate_before<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<f64, Outcome> {
+    let (mut way, mut rate) = (NEAREST, f64::NAN);
+    while rate.is_nan() && way < ASIDE {
+        rate = rate_at(surface, step, (part - way).max(0.0))?;
+        way *= 8.0;
+    }
+    Ok(rate)
 }
 
 /// The gap rate at a fraction of a step.

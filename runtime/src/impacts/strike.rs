@@ -82,6 +82,9 @@ impl<Sys: Impacting> Impacts<Sys> {
         observer: &mut O,
     ) -> Result<(), Outcome> {
         let mut rates = self.watch.rates_here(now)?;
+        if let Some(before) = self.watch.before_kink(&hits, &rates, now)? {
+            (*now.state, rates) = (before.state, before.rates);
+        }
         if let Some(slide) = self.resting.held().slide()
             && !slide.meets_another(now.system, &hits)
         {

@@ -258,7 +258,9 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut at_hand = PerSurface::all(&gaps, false);
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
-                let drift = SAME_TIME * (rates.as_slice()[surface] * now.t).abs();
+                // At a kink the gap has no rate, which `f64::max` drops.
+                let rate = rates.as_slice()[surface].abs().max(0.0);
+                let drift = SAME_TIME * rate * now.t.abs();
                 if gap.abs() <= 2.0 * rounding(now, surface, &self.sizes) + drift {
                     at_hand[surface] = true;
                 }
