@@ -220,3 +220,36 @@ fn a_run_to_its_last_impact_is_verified() {
     assert_eq!(done.exit, Exit::Reached, "{}", done.output);
     assert!(error_of(&done).contains("reference"), "{}", done.output);
 }
+
+/// How many hops are carried out before their limit is up to rounding.
+#[test]
+fn hops_that_end_at_one_limit_are_one_motion() {
+    for integrator in ["taylor", "dop853", "dopri5", "gauss6"] {
+        for law in ["newton:0.3", "newton:0.5", "newton:0.8"] {
+            for rest in ["stop", "contact"] {
+                let line = format!(
+                    "simulate bouncing_ball --law {law} --rest {rest} --until 30 --integrator {integrator} --verify"
+                );
+                let done = run(&line);
+                let error = error_of(&done);
+                assert!(!error.contains("not verified"), "{line}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_begins_to_count_behind_the_motion_is_the_end_that_was_found() {
+    static RISING: Text = Text::new(
+        "Rising { coordinates { x; } lagrangian = dot(x)^2/2;
+         impacts { lift: x + 1.389 - 0.43*t >= 0 when x > 0.523; }
+         initial { x = -0.8100634180245905; dot(x) = 0.1838868429076268; } }",
+    );
+    for integrator in ["taylor", "dop853", "gauss6"] {
+        let line = format!("simulate rising --until 10 --integrator {integrator} --verify");
+        let done = over(&[RISING.entry()], &line);
+        assert!(done.output.contains("begins_behind"), "{}", done.output);
+        let error = error_of(&done);
+        assert!(!error.contains("not verified"), "{integrator}: {error}");
+    }
+}

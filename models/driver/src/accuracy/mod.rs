@@ -35,8 +35,9 @@ mod verdict;
 
 use std::time::{Duration, Instant};
 
+use dalembert::audit::Finding;
 use dalembert::integrate::{Counters, counted_work};
-use dalembert::{Outcome, Policies, SceneEffects, TaylorField};
+use dalembert::{Outcome, Policies, Run, SceneEffects, TaylorField};
 use thiserror::Error;
 
 use crate::integrator::{Form, Integrator};
@@ -476,6 +477,19 @@ fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<T
     Ok(probe.track(&solved, Audited::Not))
 }
 
+/// Relative difference between times up to which a finding belongs to the end of a run.
+const AT_END: f64 = 1e-10;
+
+/// True if an audit found what the run ends with: a surface that begins to count with the motion behind it.
+fn is_end<S>(finding: Finding, run: &Run<S>) -> bool {
+    match (finding, run.outcome) {
+        (Finding::MayBeMet { surface, t }, Outcome::BeginsBehind { surface: ended, .. }) => {
+            surface == ended && (t - run.t).abs() <= AT_END * run.t.abs()
+        }
+        _ => false,
+    }
+}
+
 /// Runs a model under an audit of its impacts; the track has positions up to the time `until`.
 fn audited<M: Model>(
     model: &M,
@@ -488,11 +502,14 @@ fn audited<M: Model>(
     let has_audit = effects.audit(model, &mut |audit| {
         let mut probe = Probe::new(model, until);
         let solved = run::solve(model, state, settings, &mut (&mut probe, &mut *audit));
-        let result = match audit.finding() {
-            None => Audited::Confirmed,
-            Some(finding) => Audited::Doubted(finding),
-        };
-        audited = Some(solved.map(|solved| probe.track(&solved, result)));
+        let finding = audit.finding();
+        audited = Some(solved.map(|solved| {
+            let result = match finding {
+                Some(finding) if !is_end(finding, &solved.run) => Audited::Doubted(finding),
+                _ => Audited::Confirmed,
+            };
+            probe.track(&solved, result)
+        }));
     });
     if let Some(track) = audited.filter(|_| has_audit) {
         return track;

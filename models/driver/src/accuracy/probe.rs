@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use dalembert::audit::Finding;
 use dalembert::describe::Topology;
 use dalembert::integrate::Counters;
-use dalembert::{Event, Observer, Outcome, Segment, StateVector};
+use dalembert::{Event, Hold, Observer, Outcome, Segment, StateVector};
 
 use super::TIMES;
 use crate::grid::Grid;
@@ -22,6 +22,16 @@ pub struct Probe<'a, M> {
     times: Grid,
     positions: Vec<Vec<f64>>,
     impacts: Vec<Met>,
+    limits: Vec<Limit>,
+}
+
+/// A time at which impacts on a surface accumulate. How many of them are carried out before it, rounding decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Limit {
+    t: f64,
+    surface: usize,
+    /// Number of impacts of the run before it.
+    impacts: usize,
 }
 
 /// An impact: its time, and the index of the surface.
@@ -42,6 +52,7 @@ impl<'a, M: Model> Probe<'a, M> {
             },
             positions: Vec::new(),
             impacts: Vec::new(),
+            limits: Vec::new(),
         }
     }
 
@@ -49,8 +60,21 @@ impl<'a, M: Model> Probe<'a, M> {
         self.times.time(self.positions.len() as u64)
     }
 
+    fn note_limit(&mut self, t: f64, surface: usize) {
+        if self.impacts.len() < KEPT {
+            self.limits.push(Limit {
+                t,
+                surface,
+                impacts: self.impacts.len(),
+            });
+        }
+    }
+
     /// The track of the run that this probe has observed, with the result of its audit.
-    pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
+    pub fn track(mut self, solved: &Solved<M::State>, audit: Audited) -> Track {
+        if let Outcome::Zeno { t, surface } = solved.run.outcome {
+            self.note_limit(t, surface);
+        }
         let last = self.model.position(&solved.run.state);
         let description = self.model.description();
         Track {
@@ -62,6 +86,7 @@ impl<'a, M: Model> Probe<'a, M> {
                 .collect(),
             positions: self.positions,
             impacts: self.impacts,
+            limits: self.limits,
             audit,
             last: last.as_slice().to_vec(),
             outcome: solved.run.outcome,
@@ -91,6 +116,13 @@ impl<M: Model> Observer<M> for Probe<'_, M> {
                 t: event.t,
                 surface: event.surface,
             });
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn hold(&mut self, hold: &Hold<M::State>) -> ControlFlow<()> {
+        if let Some(t) = hold.accumulation {
+            self.note_limit(t, hold.surface);
         }
         ControlFlow::Continue(())
     }
@@ -157,6 +189,8 @@ pub struct Track {
     positions: Vec<Vec<f64>>,
     /// The first impacts, in order of time.
     impacts: Vec<Met>,
+    /// Accumulations of impacts, in order of time.
+    limits: Vec<Limit>,
     audit: Audited,
     /// Positions at the end.
     last: Vec<f64>,
@@ -193,21 +227,57 @@ impl Track {
     }
 
     fn difference(&self, other: &Self) -> Option<Difference> {
-        let at = |index: usize| [self, other].map(|track| track.impacts.get(index).copied());
-        let longest = self.impacts.len().max(other.impacts.len());
-        let surfaces = |[a, b]: [Option<Met>; 2]| [a, b].map(|met| met.map(|met| met.surface));
-        let differs = |index: &usize| {
-            let [this, others] = surfaces(at(*index));
-            this != others
-        };
-        if let Some(index) = (0..longest).find(differs) {
-            return Some(Difference::Impact {
-                number: index + 1,
-                met: at(index),
-            });
+        let mut from = [0, 0];
+        for (this, others) in self.limits.iter().zip(&other.limits) {
+            if this.surface != others.surface {
+                break;
+            }
+            let until = [this.impacts, others.impacts];
+            let differs = self.differs_between(other, from, until, Some(this.surface));
+            if differs.is_some() {
+                return differs;
+            }
+            from = until;
         }
-        let ends = |track: &Self| (track.outcome.kind(), track.counters.impacts);
-        (ends(self) != ends(other)).then_some(Difference::End)
+        let until = [self.impacts.len(), other.impacts.len()];
+        let differs = self.differs_between(other, from, until, None);
+        let end = |track: &Self, from: usize| {
+            let impacts = track.counters.impacts.saturating_sub(from as u64);
+            (track.outcome.kind(), track.limits.len(), impacts)
+        };
+        let ends_alike = end(self, from[0]) == end(other, from[1]);
+        differs.or_else(|| (!ends_alike).then_some(Difference::End))
+    }
+
+    /// The first difference between impacts of both runs. Before an accumulation on a surface, one of the runs may have more
+    /// impacts on it.
+    fn differs_between(
+        &self,
+        other: &Self,
+        from: [usize; 2],
+        until: [usize; 2],
+        accumulating: Option<usize>,
+    ) -> Option<Difference> {
+        let at = |place: usize| {
+            let of = |track: &Self, k: usize| {
+                let index = from[k] + place;
+                (index < until[k]).then(|| track.impacts[index])
+            };
+            [of(self, 0), of(other, 1)]
+        };
+        let longest = (until[0] - from[0]).max(until[1] - from[1]);
+        let differs = |place: &usize| {
+            let surfaces = at(*place).map(|met| met.map(|met| met.surface));
+            match surfaces {
+                [Some(this), Some(others)] => this != others,
+                [Some(one), None] | [None, Some(one)] => Some(one) != accumulating,
+                [None, None] => false,
+            }
+        };
+        (0..longest).find(differs).map(|place| Difference::Impact {
+            number: from[0] + place + 1,
+            met: at(place),
+        })
     }
 
     /// Describes an impact.
@@ -236,23 +306,33 @@ impl Track {
             && pairs.all(|(left, right)| left == right || right.is_nan())
     }
 
-    /// The largest relative difference from `reference` of a position, or of the time at the end. It is infinite if a
-    /// position is NaN.
+    /// The largest relative difference from `reference` of a position, of the time of an accumulation, or of the time at the end.
+    /// It is infinite if a position is NaN. A run that ends where impacts accumulate ends at the limit, not at its last impact.
     pub fn distance(&self, reference: &Self) -> f64 {
         let scales: Vec<f64> = (0..self.topologies.len())
             .map(|i| reference.scale(i))
             .collect();
         let pairs = self.positions.iter().zip(&reference.positions);
-        let pairs = pairs.chain([(&self.last, &reference.last)]);
+        let accumulates = |track: &Self| matches!(track.outcome, Outcome::Zeno { .. });
+        let is_limit = accumulates(self) && accumulates(reference);
+        let ends = (!is_limit).then_some((&self.last, &reference.last));
+        let pairs = pairs.chain(ends);
         let differences = pairs.flat_map(|(left, right)| {
             let components = left.iter().zip(right).zip(&scales);
             components.map(|((left, right), scale)| (left - right).abs() / scale)
         });
-        let late = (self.t - reference.t).abs();
+        let limits = self.limits.iter().zip(&reference.limits);
+        let times = limits.map(|(this, others)| [this.t, others.t]);
+        let ends = (!is_limit).then_some([self.t, reference.t]);
         // Two runs of length 0 have equal ends.
-        let end = if late == 0.0 { 0.0 } else { late / reference.t };
+        let late = times
+            .chain(ends)
+            .map(|[this, others]| match this == others {
+                true => 0.0,
+                false => ((this - others) / others).abs(),
+            });
         let number = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        differences.map(number).fold(number(end), f64::max)
+        differences.chain(late).map(number).fold(0.0, f64::max)
     }
 
     /// The largest absolute value of a coordinate; at least 1 for an angle, and 1 for a coordinate that stays at 0.
