@@ -82,7 +82,7 @@ impl<'a> Recorder<'a> {
             self.sample(time, last);
         }
         if let Some(trace) = &mut self.record.trace {
-            trace.corner(t, last);
+            trace.end(t, last);
         }
         self.progress.finish();
         match self.failure {

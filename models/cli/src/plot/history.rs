@@ -1,6 +1,8 @@
 //! Quantities against time, with impacts as vertical lines. By default one panel shows all coordinates and a second one
 //! the outputs.
 
+use std::collections::BTreeMap;
+
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
 use plotters::style::{Color, RGBColor};
@@ -187,7 +189,14 @@ fn impact_lines(
     } else {
         range[0] + 0.04 * (range[1] - range[0])
     };
-    picture.impacts.iter().map(move |impact| {
+    // Impacts within a quarter of a pixel are drawn once.
+    let raster = 4.0 * picture.width / picture.last.0;
+    let mut drawn: BTreeMap<usize, i64> = BTreeMap::new();
+    let shown = picture.impacts.iter().filter(move |impact| {
+        let place = (impact.t * raster) as i64;
+        drawn.insert(impact.surface, place) != Some(place)
+    });
+    shown.map(move |impact| {
         let colour = style::surface(impact.surface).mix(if few { 0.45 } else { 0.8 });
         PathElement::new(
             vec![(impact.t, range[0]), (impact.t, top)],

@@ -1,5 +1,8 @@
 //! A plane with two linear axes, and the objects drawn on it: paths, impacts, the start and the end.
 
+use std::collections::HashSet;
+use std::hash::Hash;
+
 use plotters::element::{Circle, EmptyElement, PathElement, Rectangle};
 use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend};
 use plotters::style::{Color, RGBColor};
@@ -214,6 +217,24 @@ fn draw_some_axes(
         .map_err(message)
 }
 
+/// Number of marks above which those at one place are drawn once.
+const MANY: usize = 4096;
+
+/// The place of a mark on a raster of half a pixel.
+fn pixel((x, y): (i32, i32)) -> [i32; 2] {
+    [x, y].map(|value| value / px(0.5))
+}
+
+/// The marks, each place once if there are many.
+fn apart<T, K: Eq + Hash>(marks: impl Iterator<Item = T>, place: impl Fn(&T) -> K) -> Vec<T> {
+    let mut marks: Vec<T> = marks.collect();
+    if marks.len() > MANY {
+        let mut seen = HashSet::new();
+        marks.retain(|mark| seen.insert(place(mark)));
+    }
+    marks
+}
+
 /// Draws a dashed line between the points of each pair, unless they coincide or are not finite.
 ///
 /// # Errors
@@ -227,8 +248,10 @@ pub fn dashes(
         ends[0] != ends[1] && ends.as_flattened().iter().all(|value| value.is_finite())
     };
     let style = colour.stroke_width(stroke(DASHED));
+    let pixels = |[x, y]: [f64; 2]| pixel(chart.backend_coord(&(x, y)));
+    let jumps = apart(jumps.filter(is_drawn), |ends| ends.map(pixels));
     let lines = jumps
-        .filter(is_drawn)
+        .into_iter()
         .map(|ends| PathElement::new(ends.map(|[x, y]| (x, y)), style));
     chart.draw_series(lines).map_err(message).map(drop)
 }
@@ -243,7 +266,11 @@ pub fn dots(
     radius: f64,
 ) -> Result<(), String> {
     let finite = points.filter(|(at, _)| at.iter().all(|value| value.is_finite()));
-    let dots = finite.map(|(at, colour)| Circle::new((at[0], at[1]), px(radius), colour.filled()));
+    let pixels = |[x, y]: [f64; 2]| pixel(chart.backend_coord(&(x, y)));
+    let points = apart(finite, |(at, colour)| (pixels(*at), colour.rgb()));
+    let dots = points
+        .into_iter()
+        .map(|(at, colour)| Circle::new((at[0], at[1]), px(radius), colour.filled()));
     chart.draw_series(dots).map_err(message).map(drop)
 }
 

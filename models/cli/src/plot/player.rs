@@ -271,6 +271,7 @@ mod tests {
             t,
             values: vec![x],
             corner: true,
+            step: 1,
         };
         let marks = [
             mark(0.0, 0.0),

@@ -10,9 +10,8 @@ const INTERVALS: usize = 12;
 /// Largest number of halvings of an interval.
 const DEPTH: u32 = 8;
 
-/// Number of points beyond which steps are no longer divided. Besides corners, at most about twice as many points are
-/// kept.
-const MANY: usize = 100_000;
+/// Number of points beyond which only every second of the steps that are left is shown.
+const MANY: usize = 200_000;
 
 /// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
 const FLATNESS: f64 = 3e-4;
@@ -70,6 +69,10 @@ pub struct Trace {
     points: Vec<Mark>,
     /// Least and greatest value so far, per component.
     extent: Vec<[f64; 2]>,
+    /// Number of steps so far.
+    steps: u64,
+    /// One step out of this many is shown, with all its points.
+    stride: u64,
 }
 
 /// A point of the curve.
@@ -79,9 +82,10 @@ pub struct Mark {
     pub t: f64,
     /// The values of the components at that time.
     pub values: Vec<f64>,
-    /// True for either side of an impact, for an event of a contact and for an end of the run. Thinning keeps such
-    /// points.
+    /// True for either side of an impact, for an event of a contact and for an end of the run.
     pub corner: bool,
+    /// Number of the step that it ends or belongs to, counted from 1.
+    pub(super) step: u64,
 }
 
 impl Mark {
@@ -90,6 +94,11 @@ impl Mark {
         let mut values = self.values.iter().zip(&next.values);
         let is_same = |(a, b): (&f64, &f64)| a == b || (a.is_nan() && b.is_nan());
         self.corner && next.corner && self.t == next.t && !values.all(is_same)
+    }
+
+    /// True if no step between this point and the next one was left out.
+    fn leads_to(&self, next: &Self) -> bool {
+        next.step <= self.step + 1
     }
 }
 
@@ -101,6 +110,8 @@ impl Trace {
             start: None,
             points: Vec::new(),
             extent: Vec::new(),
+            steps: 0,
+            stride: 1,
         }
     }
 
@@ -115,10 +126,12 @@ impl Trace {
         &self.points
     }
 
-    /// The curve with the points `at`, in stretches between jumps and points at which a component is NaN.
+    /// The curve with the points `at`, in stretches between jumps, steps that are left out, and points at which a component is
+    /// NaN.
     pub fn stretches(&self, at: impl Fn(&Mark) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
         let mut stretches = Vec::new();
-        for marks in self.points.chunk_by(|left, right| !left.jumps_to(right)) {
+        let goes_on = |left: &Mark, right: &Mark| !left.jumps_to(right) && left.leads_to(right);
+        for marks in self.points.chunk_by(goes_on) {
             let points: Vec<[f64; 2]> = marks.iter().map(&at).collect();
             let pieces = points.split(|point| !point.iter().all(|value| value.is_finite()));
             stretches.extend(pieces.filter(|piece| !piece.is_empty()).map(<[_]>::to_vec));
@@ -136,10 +149,15 @@ impl Trace {
 
     /// Adds a step without impacts inside.
     pub fn follow(&mut self, piece: &dyn Piece) {
+        self.steps += 1;
+        if !self.is_shown(self.steps) {
+            return;
+        }
         let (start, end) = piece.span();
-        let many = self.points.len() >= MANY || !self.source.looks_inside();
-        let intervals = if many { 1 } else { INTERVALS };
-        let depth = if many { 0 } else { DEPTH };
+        let (intervals, depth) = match self.source.looks_inside() {
+            true => (INTERVALS, DEPTH),
+            false => (1, 0),
+        };
         let time = |index: usize| start + (end - start) * (index as f64 / intervals as f64);
         let marks: Vec<Mark> = (0..=intervals)
             .map(|index| self.mark(time(index), &piece.at(time(index))))
@@ -157,8 +175,15 @@ impl Trace {
         self.thin();
     }
 
-    /// Adds one side of an impact, an event of a contact, or an end of the run.
+    /// Adds one side of an impact, or an event of a contact.
     pub fn corner(&mut self, t: f64, point: &Point) {
+        if self.is_shown(self.steps) {
+            self.end(t, point);
+        }
+    }
+
+    /// Adds an end of the run.
+    pub fn end(&mut self, t: f64, point: &Point) {
         let mark = Mark {
             corner: true,
             ..self.mark(t, point)
@@ -173,6 +198,7 @@ impl Trace {
             t,
             values: self.source.values(t, point, start),
             corner: false,
+            step: self.steps,
         }
     }
 
@@ -229,16 +255,19 @@ impl Trace {
         }
     }
 
-    /// Removes every other point, except corners, if there are too many.
+    /// True if a step is shown. The start of the run counts as step 0.
+    fn is_shown(&self, step: u64) -> bool {
+        step.saturating_sub(1).is_multiple_of(self.stride)
+    }
+
+    /// Leaves out every second step while there are too many points.
     fn thin(&mut self) {
-        if self.points.len() < 2 * MANY {
-            return;
+        while self.points.len() > MANY && self.stride < self.steps {
+            self.stride *= 2;
+            let mut points = std::mem::take(&mut self.points);
+            points.retain(|mark| self.is_shown(mark.step));
+            self.points = points;
         }
-        let mut keep = false;
-        self.points.retain(|mark| {
-            keep = !keep;
-            keep || mark.corner
-        });
     }
 }
 
@@ -286,6 +315,28 @@ mod tests {
         // Rounding errors do not require more points than a straight curve alone.
         let beside = [Quantity::Time, Quantity::Position(0), Quantity::EnergyError];
         assert_eq!(count(&beside), INTERVALS + 1);
+    }
+
+    #[test]
+    fn a_run_of_many_steps_shows_some_of_them_whole() {
+        let mut trace = Trace::of(Source::View);
+        let steps = 5000;
+        for _ in 0..steps {
+            trace.follow(&Circle);
+        }
+        assert!(trace.points().len() <= MANY);
+        let stretches = trace.stretches(|mark| [mark.values[0], mark.values[1]]);
+        assert!(
+            stretches.len() as u64 >= steps / trace.stride,
+            "{}",
+            stretches.len()
+        );
+        for stretch in stretches {
+            let apart = stretch
+                .windows(2)
+                .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
+            assert!(apart.fold(0.0, f64::max) < 0.1);
+        }
     }
 
     #[test]
