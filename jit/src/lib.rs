@@ -36,6 +36,7 @@
 
 mod feedback;
 mod form;
+mod lexical;
 mod machine;
 #[cfg_attr(
     not(any(target_arch = "x86_64", target_arch = "aarch64")),

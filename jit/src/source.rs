@@ -1,10 +1,13 @@
 //! The models of a text, and its mistakes by line and column.
 
 use std::fmt;
+use std::ops::Range;
 
 use dalembert_codegen::diagnostics::{Counterexample, Diagnostics, Location};
 use dalembert_codegen::{self as codegen};
-use proc_macro2::{LexError, Span, TokenStream};
+use proc_macro2::{Ident, LexError, Span, TokenStream, TokenTree};
+
+use crate::lexical;
 
 /// Mistakes in a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,9 +35,14 @@ pub struct Mistake {
 impl Refused {
     /// No mistakes yet.
     pub(crate) fn new(name: &str, text: &str) -> Self {
+        // A comment ends with its line, also in a text whose lines end in carriage returns alone.
+        let text = match text.contains('\n') {
+            true => text.to_owned(),
+            false => text.replace('\r', "\n"),
+        };
         Self {
             name: name.to_owned(),
-            text: text.to_owned(),
+            text,
             mistakes: Vec::new(),
         }
     }
@@ -61,6 +69,19 @@ impl Refused {
         match self.mistakes.is_empty() {
             true => Ok(value),
             false => Err(self),
+        }
+    }
+
+    /// A mistake at these bytes of one line.
+    fn within(&self, bytes: Range<usize>, message: String) -> Mistake {
+        let before = &self.text[..bytes.start];
+        let begin = before.rfind('\n').map_or(0, |end| end + 1);
+        Mistake {
+            message,
+            line: before.matches('\n').count() + 1,
+            column: before[begin..].chars().count() + 1,
+            width: self.text[bytes].chars().count().max(1),
+            counterexample: None,
         }
     }
 
@@ -125,11 +146,16 @@ pub(crate) fn models(refused: &mut Refused) -> Result<Vec<TokenStream>, Refused>
     let tokens: TokenStream = match refused.text.parse() {
         Ok(tokens) => tokens,
         Err(error) => {
-            let error: LexError = error;
-            let mistake = refused.at(
-                &Location::from(error.span()),
-                "not a text of the language: a bracket, a quote or a character is wrong here",
-            );
+            let mistake = match lexical::fault(&refused.text) {
+                Some((bytes, message)) => refused.within(bytes, message),
+                None => {
+                    let error: LexError = error;
+                    refused.at(
+                        &Location::from(error.span()),
+                        "not a text of the language: a quote or a character is wrong here",
+                    )
+                }
+            };
             refused.mistakes.push(mistake);
             return Err(refused.clone());
         }
@@ -147,5 +173,29 @@ pub(crate) fn models(refused: &mut Refused) -> Result<Vec<TokenStream>, Refused>
         });
         return Err(refused.clone());
     }
-    Ok(models)
+    let mut names: Vec<Ident> = Vec::new();
+    for model in &models {
+        let Some(name) = name_of(model) else {
+            continue;
+        };
+        if names.contains(&name) {
+            let text = format!("a second model `{name}` in this text\nrename one of them");
+            let mistake = refused.at(&Location::from(name.span()), &text);
+            refused.mistakes.push(mistake);
+        }
+        names.push(name);
+    }
+    match refused.mistakes.is_empty() {
+        true => Ok(models),
+        false => Err(refused.clone()),
+    }
+}
+
+/// The last word in front of the block of a model.
+fn name_of(model: &TokenStream) -> Option<Ident> {
+    let words = model.clone().into_iter().filter_map(|token| match token {
+        TokenTree::Ident(word) => Some(word),
+        _ => None,
+    });
+    words.last()
 }

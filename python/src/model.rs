@@ -94,9 +94,11 @@ impl NativeModel {
     /// The model of a form, with declared values.
     fn of_form(models: &Arc<[Loaded]>, place: usize, form: &Arc<Form>) -> PyResult<Self> {
         let model = of_form(Arc::clone(form).into(), Code::Loaded).ok_or_else(|| {
+            let excess = form
+                .excess()
+                .map_or(String::new(), |excess| excess.to_string());
             error::refused(format!(
-                "`{}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate of Rust \
-                 with `dalembert::model!`",
+                "`{}` has {excess}; compile it in a crate of Rust with `dalembert::model!`",
                 form.documentation.description.name
             ))
         })?;

@@ -79,3 +79,17 @@ fn what_has_no_bracket_and_what_is_no_symmetry_is_refused_with_the_flag() {
         }
     }
 }
+
+/// The momentum of a group that no motion on the constraints follows is changed by impacts.
+#[test]
+fn no_impact_is_said_to_keep_momenta_that_it_changes() {
+    let text = "Spin { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { c: dot(y) = dot(x)*x; } impacts { w: y + x <= 1; } }";
+    let done = run_on(text, &["derive", "-", "--group", "partial(y)"]);
+    assert!(!done.output.contains("keeps"), "{}", done.output);
+    assert!(
+        done.output.contains("impacts may change J"),
+        "{}",
+        done.output
+    );
+}

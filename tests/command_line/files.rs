@@ -169,7 +169,21 @@ fn what_is_too_large_is_said() {
     let refused = run_on(text, &["simulate", "-"]);
     assert_eq!(refused.exit, Exit::Refused);
     assert!(
-        refused.errors.contains("more than 32 components"),
+        refused
+            .errors
+            .contains("80 components of a state; without a compiler there is room for 32"),
+        "{}",
+        refused.errors
+    );
+    let terms: Vec<String> = (1..=300).map(|k| format!("sin({k}*x)/{k}")).collect();
+    let text = format!(
+        "P {{ coordinates {{ x; y; }} lagrangian = dot(x)^2/2 + dot(y)^2/2 - ({}); initial {{ until = 1; }} }}",
+        terms.join(" + ")
+    );
+    let refused = run_on(&text, &["simulate", "-"]);
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("kept power series"),
         "{}",
         refused.errors
     );

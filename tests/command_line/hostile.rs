@@ -1,6 +1,7 @@
 //! Wrong input gives exit status 2, an empty standard output, and a message that names the flag and the accepted
 //! values. The program never panics.
 
+use super::folder::Folder;
 use super::*;
 
 /// The message of a command line that is refused.
@@ -395,4 +396,42 @@ fn numbers_at_the_ends_of_the_range_are_drawn_or_refused() {
         );
     }
     std::fs::remove_file(&path).unwrap();
+}
+
+#[test]
+fn no_output_replaces_a_file_that_is_read() {
+    let folder = Folder::new("replaced");
+    let text = "One { coordinates { x; } lagrangian = dot(x)^2/2; initial { x = 1; until = 1; } }";
+    let model = folder.file("one.dal", text);
+    let starts = folder.file("starts.csv", "x,x_dot\n1,0\n");
+    let lines = [
+        format!("simulate {model} --csv {model}"),
+        format!("simulate {model} --json {model}"),
+        format!("derive {model} --json {model}"),
+        format!("check {model} --certificate {model}"),
+        format!("linearise {model} --json {model}"),
+        format!("export {model} --c {model}"),
+        format!("accuracy {model} --csv {model}"),
+        format!("ensemble {model} --members 2 --csv {model}"),
+        format!("ensemble {model} --from {starts} --csv {starts}"),
+    ];
+    for line in &lines {
+        let message = refused(&line.split_whitespace().collect::<Vec<_>>());
+        assert!(message.contains("does not read"), "{line}: {message}");
+    }
+    assert_eq!(folder.read("one.dal"), text);
+}
+
+#[test]
+fn a_step_that_times_cannot_resolve_is_refused() {
+    check(&[
+        (
+            "simulate bouncing_ball --integrator rk4 --step 1e-300 --until 10",
+            &["--step", "`1e-300`", "distance of times"],
+        ),
+        (
+            "simulate bouncing_ball --max-step 1e-17 --until 10",
+            &["--max-step", "at least 2.2e-15"],
+        ),
+    ]);
 }

@@ -203,7 +203,7 @@ pub(super) fn change_at(
             }
         }
     } else if is_transition {
-        let text = "its effect is not examined: the mode that it leads to is not available";
+        let text = "its effect is not examined: the mode that it leads to is not examined here";
         return Err(Unknown::Open(text.to_owned()));
     }
     let solution = wall.solution();

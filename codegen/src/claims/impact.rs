@@ -117,7 +117,9 @@ pub(super) fn changes_at(
             after.ok_or_else(|| format!("`{written}` is not known after `{name}`"))?
         }
         None if enters.is_some() => {
-            return Err(format!("the mode that `{name}` leads to is not available"));
+            return Err(format!(
+                "the mode that `{name}` leads to is not examined here"
+            ));
         }
         None => value,
     };

@@ -279,7 +279,7 @@ pub(super) fn kept_at_surface(
     }
     match &wall.passage {
         None if enters.is_some() => {
-            return Verdict::Undecided("the mode that it leads to is not available".to_owned());
+            return Verdict::Undecided("the mode that it leads to is not examined here".to_owned());
         }
         Some(passage) if passage.open == Some(Open::Refraction) => {
             return Verdict::Undecided(Open::Refraction.text());

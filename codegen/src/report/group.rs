@@ -416,11 +416,19 @@ impl Group<'_> {
 
     fn impacts(&mut self) -> Section {
         let mut items = Vec::new();
-        let name = match self.writer.model.constraints.is_empty() {
+        let is_free = self.writer.model.constraints.is_empty();
+        let name = match is_free {
             true => ["J", "J"],
             false => ["JD", "J^D"],
         };
-        for (s, jump) in self.reduction.impacts.iter().enumerate() {
+        // Impulses lie in the span of `pi_D^* dh`: they keep nothing but the momenta along D, and D has none here.
+        let is_empty = !is_free && self.reduction.sections.is_empty();
+        if is_empty && !self.reduction.impacts.is_empty() {
+            let text = "the constraints leave no momentum along the group; impacts may change J";
+            items.push(Item::Words(text.to_owned()));
+        }
+        let impacts = self.reduction.impacts.iter().filter(|_| !is_empty);
+        for (s, jump) in impacts.enumerate() {
             let surface = self.writer.model.surfaces[s].name.display.clone();
             let law = self.writer.model.law_text(s);
             let Some(jump) = jump else {
@@ -431,7 +439,8 @@ impl Group<'_> {
             };
             if jump.slopes.iter().all(|slope| self.writer.is_zero(*slope)) {
                 items.push(Item::Words(format!(
-                    "surface {surface}: {law}, keeps the momenta"
+                    "surface {surface}: {law}, keeps {}",
+                    name[0]
                 )));
                 continue;
             }
@@ -451,10 +460,16 @@ impl Group<'_> {
         }
         Section {
             title: "Impacts on the momenta",
-            equation: [
-                "J+ = J + eps dh(xi)",
-                r"J^+ = J + \epsilon\, \mathrm{d}h(\xi)",
-            ],
+            equation: match is_free {
+                true => [
+                    "J_a+ = J_a + eps dh(xi_a)",
+                    r"J_a^+ = J_a + \epsilon\, \mathrm{d}h(\xi_a)",
+                ],
+                false => [
+                    "JD_a+ = JD_a + eps dh(e_a)",
+                    r"{J^D_a}^+ = J^D_a + \epsilon\, \mathrm{d}h(e_a)",
+                ],
+            },
             items,
         }
     }

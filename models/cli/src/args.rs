@@ -11,6 +11,7 @@ mod dynamic;
 mod ensemble;
 mod errata;
 mod file;
+mod files;
 mod gallery;
 mod help;
 mod linearise;

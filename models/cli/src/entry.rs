@@ -194,15 +194,16 @@ impl Known {
     }
 
     fn check_size(&self) -> Result<(), CliError> {
-        let has_room = |(_, build): &(_, Build)| match build {
-            Build::Erased(form) => form.capacity().is_some(),
-            Build::Loaded(form) => form.capacity().is_some(),
-            Build::Typed(..) => true,
+        let excess = |(_, build): &(_, Build)| match build {
+            Build::Erased(form) => form.excess(),
+            Build::Loaded(form) => form.excess(),
+            Build::Typed(..) => None,
         };
-        match self.scenes.iter().all(has_room) {
-            true => Ok(()),
-            false => Err(CliError::Large {
+        match self.scenes.iter().find_map(excess) {
+            None => Ok(()),
+            Some(excess) => Err(CliError::Large {
                 model: self.description().name,
+                excess,
             }),
         }
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use dalembert::StateError;
 use dalembert::describe::{Assumption, Description};
+use dalembert::erased::Excess;
 use dalembert_driver::course::LawError;
 use dalembert_driver::names::Unknown;
 use dalembert_driver::words::{self, Advice};
@@ -46,18 +47,23 @@ pub enum CliError {
     #[error("{0}")]
     Declaration(dalembert_jit::Refused),
     /// A model that is too large to run without a compiler.
-    #[error(
-        "MODEL: `{model}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate with `dalembert::model!`"
-    )]
+    #[error("MODEL: `{model}` has {excess}; compile it in a crate with `dalembert::model!`")]
     Large {
         /// The model.
         model: &'static str,
+        /// What is too much.
+        excess: Excess,
     },
     /// The reduced form, requested for a model without one.
-    #[error("--form reduced: `{model}` has no form reduced to D; `derive {model}` says why")]
+    #[error("--form reduced: `{model}` has no form reduced to D; {}", match .is_free {
+        true => "it has no constraints",
+        false => "`derive` says why",
+    })]
     Unreduced {
         /// The model.
         model: &'static str,
+        /// True if the model has no constraints.
+        is_free: bool,
     },
     /// A law that cannot be used.
     #[error("--law: {0}")]

@@ -140,6 +140,7 @@ fn with_files(
     catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    line.command.check_files()?;
     if let Some(selection) = line.command.selection()
         && let Some(models) = model_file::selected(selection, catalogue.models(), streams.input)?
     {

@@ -81,7 +81,9 @@ fn read(
         (Some(name), _) => names::find(file, "model", name, all)?,
         (None, [_]) => 0,
         (None, _) => {
-            let several: Vec<String> = all.map(|name| format!("{file}:{name}")).collect();
+            // An argument that begins with a hyphen stands behind `--`.
+            let before = if file == INPUT { "-- " } else { "" };
+            let several: Vec<String> = all.map(|name| format!("{before}{file}:{name}")).collect();
             let expected = format!("one of its models: {}", several.join(", "));
             return Err(CliError::value("MODEL", file, expected));
         }
@@ -110,14 +112,20 @@ fn split(given: &str) -> Option<(&str, Option<&str>)> {
     let is_file = |name: &str| {
         let path = Path::new(name);
         name == INPUT
-            || path.is_file()
+            // A pipe is a file, too.
+            || (path.exists() && !path.is_dir())
             || path.extension().is_some_and(|ending| ending == EXTENSION)
     };
     if is_file(given) {
         return Some((given, None));
     }
-    let (file, name) = given.rsplit_once(':')?;
-    is_file(file).then_some((file, Some(name)))
+    if let Some((file, name)) = given.rsplit_once(':')
+        && is_file(file)
+    {
+        return Some((file, Some(name)));
+    }
+    // No model has a name with a slash.
+    given.contains('/').then_some((given, None))
 }
 
 /// The text of a file, or of the standard input.

@@ -76,13 +76,31 @@ pub fn course_to(
         ));
     }
     let integrator = (course.integrator, course.tol);
+    let settings = settings(model, run, counted, integrator)?;
+    if counted.is_none() {
+        check_resolution("--step", course.step, settings.until)?;
+        check_resolution("--max-step", course.max_step, settings.until)?;
+    }
     Ok(Settings {
         step: course.step,
         max_step: course.max_step,
         steps: course.steps,
         impacts: course.impacts,
-        ..settings(model, run, counted, integrator)?
+        ..settings
     })
+}
+
+/// Refuses a step that is shorter than the distance of neighbouring times at the end of the run, which it would never reach.
+fn check_resolution(flag: &str, step: Option<f64>, until: f64) -> Result<(), CliError> {
+    let least = f64::EPSILON * until;
+    match step {
+        Some(step) if step < least => {
+            let expected =
+                format!("at least {least:.1e}, the distance of times near the end at t = {until}");
+            Err(CliError::value(flag, format!("{step:e}"), expected))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The settings of a run by an integrator at this tolerance, to the requested time or number of impacts.
@@ -119,7 +137,10 @@ fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
     let needs_global =
         args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
     Form::choose(description, args.form, needs_global).map_err(|error| match error {
-        FormError::Unreduced { model } => CliError::Unreduced { model },
+        FormError::Unreduced { model } => CliError::Unreduced {
+            model,
+            is_free: description.constraints.is_empty(),
+        },
         FormError::OnConstraints => CliError::Usage(
             "--form reduced has no states off the constraints: leave out --off-constraint keep and --projection",
         ),

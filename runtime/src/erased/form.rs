@@ -79,6 +79,27 @@ pub struct Form {
     pub room: usize,
 }
 
+/// A number that is too large for an erased system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Excess {
+    /// What is counted, in words.
+    pub what: &'static str,
+    /// The number.
+    pub count: usize,
+    /// The largest number for which there is room.
+    pub most: usize,
+}
+
+impl fmt::Display for Excess {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, count, most } = self;
+        write!(
+            f,
+            "{count} {what}; without a compiler there is room for {most}"
+        )
+    }
+}
+
 impl fmt::Debug for Form {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Form")
@@ -99,6 +120,25 @@ impl Form {
             k += 1;
         }
         None
+    }
+
+    /// What is too much for the largest of [`CAPACITIES`]; `None` if the form fits.
+    pub fn excess(&self) -> Option<Excess> {
+        let most = CAPACITIES[CAPACITIES.len() - 1];
+        let dimensions = &self.tables.value().dimensions;
+        let components = dimensions.state.max(2 * dimensions.coordinates);
+        let parameters = PARAMETERS.min(ARGUMENTS * most);
+        let counts = [
+            ("components of a state", components, most),
+            ("surfaces", dimensions.surfaces, most),
+            ("parameters and inputs", dimensions.parameters, parameters),
+            ("derived quantities", self.room, ROWS * most),
+            ("kept power series", self.firsts, FIRSTS * most),
+        ];
+        let mut counts = counts.into_iter();
+        counts
+            .find(|&(_, count, most)| count > most)
+            .map(|(what, count, most)| Excess { what, count, most })
     }
 
     /// True if a system of this capacity has room for the vectors, parameters, kernels and series of the form, and for the

@@ -16,6 +16,12 @@ use crate::{Streams, model_file};
 /// A file that cannot be read or has mistakes, a folder that is not empty or cannot be written.
 pub fn run(args: &BuildArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     let given = args.file.display().to_string();
+    if let (false, Some((file, _))) = (args.file.exists(), given.rsplit_once(':'))
+        && Path::new(file).is_file()
+    {
+        let expected = format!("a whole file: `{file}`");
+        return Err(CliError::value("FILE", given, expected));
+    }
     let text = model_file::text(&given, streams.input)?;
     let models = dalembert_jit::load(&given, &text).map_err(CliError::Declaration)?;
     let models: Vec<String> = models.into_iter().map(|model| model.name).collect();
@@ -47,6 +53,13 @@ fn is_package_name(name: &str) -> bool {
         && name
             .chars()
             .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+/// True for a name that a crate with this command line cannot have.
+fn is_reserved(name: &str) -> bool {
+    let name = name.replace('-', "_");
+    name.starts_with("dalembert")
+        || ["alloc", "core", "proc_macro", "std", "test"].contains(&name.as_str())
 }
 
 /// The folder of the library: the given one, else the one from which this command was built.
@@ -86,6 +99,10 @@ impl Package<'_> {
             path: path.to_owned(),
             source,
         };
+        if is_reserved(self.name) {
+            let expected = "another name: a crate on which this one depends, or one of the standard library, has it";
+            return Err(CliError::value(flag, self.name, expected));
+        }
         let source = folder.join("src");
         let is_empty =
             |folder: &Path| fs::read_dir(folder).map(|mut entries| entries.next().is_none());

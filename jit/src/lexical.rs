@@ -1,0 +1,141 @@
+//! Mistakes in brackets, comments, quotes and characters, which end the reading of a text before there are tokens.
+
+use std::ops::Range;
+
+/// What is written in place of a character that is not part of the language.
+const MEANT: [(char, &str); 18] = [
+    ('\u{2212}', "-"),
+    ('\u{2010}', "-"),
+    ('\u{2013}', "-"),
+    ('\u{2014}', "-"),
+    ('\u{d7}', "*"),
+    ('\u{22c5}', "*"),
+    ('\u{2217}', "*"),
+    ('\u{f7}', "/"),
+    ('\u{2215}', "/"),
+    ('\u{b2}', "^2"),
+    ('\u{b3}', "^3"),
+    ('\u{2070}', "^0"),
+    ('\u{b9}', "^1"),
+    ('\u{221a}', "sqrt(..)"),
+    ('\u{2264}', "<="),
+    ('\u{2265}', ">="),
+    ('\u{21d2}', "=>"),
+    ('\u{221e}', "inf"),
+];
+
+/// The first mistake: its bytes, and what is wrong.
+pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
+    let mut open: Vec<(usize, char)> = Vec::new();
+    let mut rest = text.char_indices().peekable();
+    while let Some((at, character)) = rest.next() {
+        let bytes = at..at + character.len_utf8();
+        let next = rest.peek().map(|(_, next)| *next);
+        match character {
+            '/' if next == Some('/') => while rest.next_if(|(_, c)| *c != '\n').is_some() {},
+            '/' if next == Some('*') => match after_comment(&text[at..]) {
+                Some(length) => while rest.next_if(|(next, _)| *next < at + length).is_some() {},
+                None => return Some((at..at + 2, "this comment is not closed by `*/`".to_owned())),
+            },
+            '"' => {
+                let mut is_escaped = false;
+                let closed = rest.any(|(_, c)| {
+                    let ends = c == '"' && !is_escaped;
+                    is_escaped = c == '\\' && !is_escaped;
+                    ends
+                });
+                if !closed {
+                    return Some((bytes, "this quote is not closed".to_owned()));
+                }
+            }
+            '(' | '[' | '{' => open.push((at, character)),
+            ')' | ']' | '}' => match open.pop() {
+                None => return Some((bytes, format!("`{character}` closes no bracket"))),
+                Some((_, bracket)) if closing(bracket) == character => {}
+                Some((begin, bracket)) => {
+                    let line = text[..at].matches('\n').count() + 1;
+                    let missing = closing(bracket);
+                    let fault = format!(
+                        "`{bracket}` is not closed before `{character}` in line {line}\nwrite the missing `{missing}`"
+                    );
+                    return Some((begin..begin + 1, fault));
+                }
+            },
+            _ if MEANT.iter().any(|(known, _)| *known == character) || is_foreign(character) => {
+                let meant = MEANT.iter().find(|(known, _)| *known == character);
+                let help = meant.map_or(String::new(), |(_, meant)| format!("\nwrite `{meant}`"));
+                let code = u32::from(character);
+                let fault = format!(
+                    "the character `{character}` (U+{code:04X}) is not part of the language{help}"
+                );
+                return Some((bytes, fault));
+            }
+            _ => {}
+        }
+    }
+    let (begin, bracket) = open.pop()?;
+    let missing = closing(bracket);
+    let fault = format!("`{bracket}` is not closed\nwrite the missing `{missing}`");
+    Some((begin..begin + 1, fault))
+}
+
+/// The bracket that closes another one.
+fn closing(bracket: char) -> char {
+    match bracket {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// The length of the comment with which a text begins; comments may contain others.
+fn after_comment(text: &str) -> Option<usize> {
+    let (mut depth, mut at) = (0, 0);
+    loop {
+        let rest = &text[at..];
+        let inner = rest.find("/*");
+        let end = rest.find("*/")?;
+        match inner {
+            Some(inner) if inner < end => (depth, at) = (depth + 1, at + inner + 2),
+            _ => (depth, at) = (depth - 1, at + end + 2),
+        }
+        if depth == 0 {
+            return Some(at);
+        }
+    }
+}
+
+/// True for a character that is part of no token.
+fn is_foreign(character: char) -> bool {
+    !character.is_ascii() && !character.is_alphanumeric() && !character.is_whitespace()
+        || matches!(character, '\\' | '`')
+        || character.is_ascii_control() && !character.is_ascii_whitespace()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fault;
+
+    #[test]
+    fn the_bracket_that_is_not_closed_is_shown() {
+        let told = |text: &str| {
+            let (bytes, words) = fault(text).expect("a mistake");
+            (text[bytes].to_owned(), words)
+        };
+        let (at, words) = told("P { let a = (x + 1;\n }");
+        assert_eq!(at, "(");
+        assert!(words.contains("before `}` in line 2"), "{words}");
+        assert!(told("P { x; ").1.contains("`{` is not closed"));
+        assert!(told("P { x; }}").1.contains("`}` closes no bracket"));
+        assert!(told("P { /* x /* y */ }").1.contains("comment"));
+        assert!(told("P { x\u{2212}y }").1.contains("write `-`"));
+        assert!(told("P { x\u{b2} }").1.contains("write `^2`"));
+        assert!(told("P { x \u{1f600} y }").1.contains("U+1F600"));
+    }
+
+    #[test]
+    fn a_text_without_such_mistakes_has_none() {
+        let text = "// (\n/* { /* ( */ */ Ball { \u{3b8}; \u{901f}\u{5ea6}; let a = [(x)]; /// \u{2212}\n } \"(\\\"\"";
+        assert_eq!(fault(text), None);
+    }
+}
