@@ -31,6 +31,9 @@ const SLOW: f64 = 1.0 / (1 << 10) as f64;
 /// Largest gap, in units of its rounding, at which a surface that the motion does not leave is still touched.
 pub(super) const FLAT: f64 = 64.0;
 
+/// Rise of a gap from a touched surface, relative to the gap at the end of the step, below which it may be a rounding error.
+const FAINT: f64 = 1.0 / (1 << 26) as f64;
+
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
@@ -252,7 +255,8 @@ impl<Sys: Impacting> Watch<Sys> {
         if !is_active(surface, step, places.before) {
             return Ok(ControlFlow::Continue(Fall::Elsewhere));
         }
-        if !self.falls_at_start(surface, places.before, start, step) {
+        let last = glance.gaps.as_slice()[surface];
+        if !self.falls_at_start(surface, (places.before, last), start, step) {
             let approach = self.approach(surface, step, places)?;
             if let Some((there, rate)) = approach {
                 return Ok(ControlFlow::Break(Found::Hit(there, rate)));
@@ -327,13 +331,13 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 
     /// True if a fall of a touched surface belongs to the start of the step: it is there, or the gap has not risen
-    /// beyond its rounding error since then.
+    /// beyond its rounding error since then. `last` is the gap at the end of the step.
     ///
     /// NOTE: rounding would otherwise produce an endless series of hops on a pressed surface, each a little later.
     fn falls_at_start<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
-        part: f64,
+        (part, last): (f64, f64),
         start: Start,
         step: &mut StepView<'_, Sys, Step>,
     ) -> bool {
@@ -343,10 +347,14 @@ impl<Sys: Impacting> Watch<Sys> {
         if part == 0.0 {
             return true;
         }
+        // A rate that raises the gap by no more than its rounding error may itself be one.
+        let rise = slope * part;
+        if rise > FAINT * last.abs() {
+            return false;
+        }
         let rounding = self.rounding_at(surface, part, step);
         if slope > 0.0 {
-            // A rate that raises the gap by no more than its rounding error may itself be one.
-            return slope * part <= rounding;
+            return rise <= rounding;
         }
         step.counters.enclosures += 1;
         self.path.enclose();
