@@ -15,7 +15,7 @@ pub mod jet;
 pub mod kernel;
 pub mod kernels;
 pub mod linear;
-mod linked;
+pub mod linked;
 pub mod lower;
 pub mod mass;
 pub mod recipes;
