@@ -123,6 +123,19 @@ fn a_tree_agrees_with_the_metric() {
     agrees(TREE);
 }
 
+/// The sum of the angles is defined by a velocity whose coefficients change, which has no position.
+const MIXED: &str = "Mixed { const N = 9; coordinates { q[N]: angle; } parameters { m > 0 = 1; l > 0 = 0.8; g = 9.81; }
+    let X[0] = 0; let X[i in 1..=N] = X[i-1] + l*sin(q[i]);
+    let Y[0] = 0; let Y[i in 1..=N] = Y[i-1] - l*cos(q[i]);
+    let Z = sum(i in 1..=N: q[i]);
+    lagrangian = sum(i in 1..=N: m/2*(dot(X[i])^2 + dot(Y[i])^2)) + m/2*(dot(Z) + dot(q[1])*cos(q[2]))^2 + m/2*dot(Z)^2
+        + m*g*cos(Z); }";
+
+#[test]
+fn velocities_that_follow_from_others_without_positions_agree_with_the_metric() {
+    agrees(MIXED);
+}
+
 /// Operations of the rate.
 fn rate(text: &str) -> usize {
     let mut model = checked(text);

@@ -40,6 +40,9 @@ use crate::model::Model;
 /// Number of coordinates below which a linkage is not sought.
 const LEAST: usize = 5;
 
+/// Number of squares for each coordinate up to which a linkage is sought. The time of the search grows with the square of it.
+const SQUARES: usize = 8;
+
 /// A velocity: index of a coordinate, or N plus the index of a derived velocity.
 pub type Part = usize;
 
@@ -109,7 +112,8 @@ pub(super) fn derive_linkage(
     if n < LEAST || !model.constraints.is_empty() || model.field.is_some() {
         return None;
     }
-    let written = read::read(&mut model.pool, &coordinates.qdot, model.lagrangian.whole)?;
+    let whole = model.lagrangian.whole;
+    let written = read::read(&mut model.pool, &coordinates.qdot, whole, SQUARES * n)?;
     let drift = drift_of(model, coordinates, written.rest);
     let definitions = written.derived.iter().map(|(_, terms)| &terms[..]);
     let order = order(n, &definitions.collect::<Vec<_>>());
@@ -180,8 +184,16 @@ impl<'a> Places<'a> {
             of_derived: Vec::new(),
             symbols: q.iter().copied().enumerate().collect(),
         };
-        for (w, (form, _)) in written.derived.iter().enumerate() {
-            let position = Position::of(&mut model.pool, q, form, w);
+        for (w, (form, terms)) in written.derived.iter().enumerate() {
+            // The definition has to give the position, too.
+            let is_position = terms.iter().all(|&(part, factor)| {
+                let is_known = part < q.len() || places.of_derived[part - q.len()].is_some();
+                is_known && model.pool.as_number(factor).is_some()
+            });
+            let position = match is_position {
+                true => Position::of(&mut model.pool, q, form, w),
+                false => None,
+            };
             let symbol = position.as_ref().map(|position| position.symbol);
             places.of_derived.push(symbol);
             places

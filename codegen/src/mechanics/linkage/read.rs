@@ -23,8 +23,14 @@ pub(super) struct Written {
 /// Coefficients of a linear form by the index of the velocity.
 pub(super) type Form = BTreeMap<usize, ExprId>;
 
-/// Reads a Lagrangian; `None` if a quadratic term is no square of a homogeneous linear form.
-pub(super) fn read(pool: &mut Pool, qdot: &[SymbolId], lagrangian: ExprId) -> Option<Written> {
+/// Reads a Lagrangian; `None` if a quadratic term is no square of a homogeneous linear form, or if there are more than `most`
+/// squares.
+pub(super) fn read(
+    pool: &mut Pool,
+    qdot: &[SymbolId],
+    lagrangian: ExprId,
+    most: usize,
+) -> Option<Written> {
     let mut reader = Reader {
         pool,
         qdot,
@@ -34,6 +40,9 @@ pub(super) fn read(pool: &mut Pool, qdot: &[SymbolId], lagrangian: ExprId) -> Op
     let one = reader.pool.one();
     reader.summand(lagrangian, one)?;
     let Reader { squares, rest, .. } = reader;
+    if squares.len() > most {
+        return None;
+    }
     let rest = pool.sum(&rest);
     let mut forms = Forms {
         pool,
