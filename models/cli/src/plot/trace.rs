@@ -13,6 +13,9 @@ const DEPTH: u32 = 8;
 /// Number of points beyond which only every second of the steps that are left is shown.
 const MANY: usize = 200_000;
 
+/// Length of a line that is too short to be seen, relative to the extent of the curve.
+const SHORT: f64 = 1.0 / 1024.0;
+
 /// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
 const FLATNESS: f64 = 3e-4;
 
@@ -127,10 +130,25 @@ impl Trace {
     }
 
     /// The curve with the points `at`, in stretches between jumps, steps that are left out, and points at which a component is
-    /// NaN.
+    /// NaN. Where a line over the steps that are left out is too short to be seen, the curve goes on.
     pub fn stretches(&self, at: impl Fn(&Mark) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+        let points = self.points.iter().map(&at);
+        let sizes = [0, 1].map(|axis| {
+            let values = points.clone().map(|point| point[axis]);
+            let finite = values.filter(|value| value.is_finite());
+            let ends = [f64::INFINITY, f64::NEG_INFINITY];
+            let [least, most] = finite.fold(ends, |[a, b], value| [a.min(value), b.max(value)]);
+            most - least
+        });
+        let is_short = |left: &Mark, right: &Mark| {
+            let ends = at(left).into_iter().zip(at(right));
+            let mut axes = ends.zip(sizes);
+            axes.all(|((left, right), size)| (right - left).abs() <= SHORT * size)
+        };
+        let goes_on = |left: &Mark, right: &Mark| {
+            !left.jumps_to(right) && (left.leads_to(right) || is_short(left, right))
+        };
         let mut stretches = Vec::new();
-        let goes_on = |left: &Mark, right: &Mark| !left.jumps_to(right) && left.leads_to(right);
         for marks in self.points.chunk_by(goes_on) {
             let points: Vec<[f64; 2]> = marks.iter().map(&at).collect();
             let pieces = points.split(|point| !point.iter().all(|value| value.is_finite()));
@@ -337,6 +355,29 @@ mod tests {
                 .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
             assert!(apart.fold(0.0, f64::max) < 0.1);
         }
+    }
+
+    #[test]
+    fn a_smooth_curve_of_many_steps_has_no_gaps() {
+        struct Short(f64);
+
+        impl Piece for Short {
+            fn span(&self) -> (f64, f64) {
+                (self.0, self.0 + 1e-3)
+            }
+
+            fn at(&self, t: f64) -> Point {
+                Circle.at(t / 10.0)
+            }
+        }
+
+        let mut trace = Trace::of(Source::View);
+        for step in 0..60_000_u32 {
+            trace.follow(&Short(1e-3 * f64::from(step)));
+        }
+        assert!(trace.stride > 1);
+        let stretches = trace.stretches(|mark| [mark.values[0], mark.values[1]]);
+        assert_eq!(stretches.len(), 1);
     }
 
     #[test]
