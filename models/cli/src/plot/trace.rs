@@ -16,6 +16,9 @@ const MANY: usize = 200_000;
 /// Length of a line that is too short to be seen, relative to the extent of the curve.
 const SHORT: f64 = 1.0 / 1024.0;
 
+/// Cosine of the largest angle between lines of the same direction.
+const ALIGNED: f64 = 0.98;
+
 /// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
 const FLATNESS: f64 = 3e-4;
 
@@ -61,6 +64,12 @@ impl Source {
             Self::Quantities(quantities) => quantities[index].is_smooth(),
         }
     }
+}
+
+/// True if two lines have about the same direction.
+fn is_aligned(a: [f64; 2], b: [f64; 2]) -> bool {
+    let product = a[0] * b[0] + a[1] * b[1];
+    product > ALIGNED * a[0].hypot(a[1]) * b[0].hypot(b[1])
 }
 
 /// A curve under construction.
@@ -130,30 +139,44 @@ impl Trace {
     }
 
     /// The curve with the points `at`, in stretches between jumps, steps that are left out, and points at which a component is
-    /// NaN. Where a line over the steps that are left out is too short to be seen, the curve goes on.
+    /// NaN. The curve goes on over steps that are left out where a line over them has its direction, or is too short to be seen.
     pub fn stretches(&self, at: impl Fn(&Mark) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-        let points = self.points.iter().map(&at);
+        let points: Vec<[f64; 2]> = self.points.iter().map(at).collect();
         let sizes = [0, 1].map(|axis| {
-            let values = points.clone().map(|point| point[axis]);
+            let values = points.iter().map(|point| point[axis]);
             let finite = values.filter(|value| value.is_finite());
             let ends = [f64::INFINITY, f64::NEG_INFINITY];
             let [least, most] = finite.fold(ends, |[a, b], value| [a.min(value), b.max(value)]);
-            most - least
+            f64::max(most - least, f64::MIN_POSITIVE)
         });
-        let is_short = |left: &Mark, right: &Mark| {
-            let ends = at(left).into_iter().zip(at(right));
-            let mut axes = ends.zip(sizes);
-            axes.all(|((left, right), size)| (right - left).abs() <= SHORT * size)
+        let line = |from: usize| -> Option<[f64; 2]> {
+            let (left, right) = (points.get(from)?, points.get(from + 1)?);
+            Some([0, 1].map(|axis| (right[axis] - left[axis]) / sizes[axis]))
         };
-        let goes_on = |left: &Mark, right: &Mark| {
-            !left.jumps_to(right) && (left.leads_to(right) || is_short(left, right))
+        let goes_on = |index: usize| {
+            let over = line(index).unwrap_or_default();
+            let is_along = |from: Option<usize>| {
+                let beside = from.and_then(line);
+                beside.is_none_or(|beside| is_aligned(over, beside))
+            };
+            let is_short = over.iter().all(|length| length.abs() <= SHORT);
+            is_short || (is_along(index.checked_sub(1)) && is_along(Some(index + 1)))
         };
-        let mut stretches = Vec::new();
-        for marks in self.points.chunk_by(goes_on) {
-            let points: Vec<[f64; 2]> = marks.iter().map(&at).collect();
-            let pieces = points.split(|point| !point.iter().all(|value| value.is_finite()));
-            stretches.extend(pieces.filter(|piece| !piece.is_empty()).map(<[_]>::to_vec));
+        let mut stretches = vec![Vec::new()];
+        for (index, point) in points.iter().enumerate() {
+            let is_whole = point.iter().all(|value| value.is_finite());
+            let goes_on = index.checked_sub(1).is_none_or(|before| {
+                let (left, right) = (&self.points[before], &self.points[index]);
+                !left.jumps_to(right) && (left.leads_to(right) || goes_on(before))
+            });
+            if !goes_on || !is_whole {
+                stretches.push(Vec::new());
+            }
+            if let (true, Some(stretch)) = (is_whole, stretches.last_mut()) {
+                stretch.push(*point);
+            }
         }
+        stretches.retain(|stretch| !stretch.is_empty());
         stretches
     }
 
@@ -367,7 +390,7 @@ mod tests {
             }
 
             fn at(&self, t: f64) -> Point {
-                Circle.at(t / 10.0)
+                Circle.at(t)
             }
         }
 
