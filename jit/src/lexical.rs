@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What is written in place of a character that is not part of the language.
+/// Characters that are not part of the language, with the text to write instead.
 const MEANT: [(char, &str); 18] = [
     ('\u{2212}', "-"),
     ('\u{2010}', "-"),

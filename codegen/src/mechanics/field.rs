@@ -96,7 +96,11 @@ fn gradient(model: &mut Model, coordinates: &Coordinates, lagrangian: ExprId) ->
 }
 
 /// `d/dt dL/dqdot^k` at fixed velocity.
-fn drift(model: &mut Model, coordinates: &Coordinates, lagrangian: ExprId) -> Vec<ExprId> {
+pub(super) fn drift(
+    model: &mut Model,
+    coordinates: &Coordinates,
+    lagrangian: ExprId,
+) -> Vec<ExprId> {
     let motion = coordinates.motion(model);
     let along = |&velocity| {
         let momentum = model.pool.diff(lagrangian, velocity);

@@ -23,9 +23,9 @@ pub struct Elimination {
 /// A step of an elimination.
 #[derive(Debug)]
 struct Step {
-    /// What is eliminated.
+    /// The velocity or derived velocity that is eliminated.
     part: Part,
-    /// Of a derived velocity, its definition. Of a velocity, the entries of its column of `L`.
+    /// The definition of a derived velocity, or the entries of the column of `L` of a velocity.
     beside: Vec<(Part, Value)>,
 }
 
@@ -132,9 +132,9 @@ impl Quadratic {
         let entries: BTreeMap<Part, Value> = beside.iter().copied().collect();
         let zero = builder.zero();
         for (place, &(a, factor)) in definition.iter().enumerate() {
-            let own = entries.get(&a).copied().unwrap_or(zero);
-            let whole = builder.add_product(own, diagonal, factor);
-            let doubled = builder.add(whole, own);
+            let coupling = entries.get(&a).copied().unwrap_or(zero);
+            let whole = builder.add_product(coupling, diagonal, factor);
+            let doubled = builder.add(whole, coupling);
             let product = builder.mul(factor, doubled);
             self.add(builder, a, a, product);
             for &(b, other) in &definition[place + 1..] {

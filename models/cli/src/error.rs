@@ -51,7 +51,7 @@ pub enum CliError {
     Large {
         /// The model.
         model: &'static str,
-        /// What is too much.
+        /// The number that is too large.
         excess: Excess,
     },
     /// The reduced form, requested for a model without one.

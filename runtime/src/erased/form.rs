@@ -82,7 +82,7 @@ pub struct Form {
 /// A number that is too large for an erased system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Excess {
-    /// What is counted, in words.
+    /// Name of the counted things, in the plural.
     pub what: &'static str,
     /// The number.
     pub count: usize,
@@ -122,7 +122,7 @@ impl Form {
         None
     }
 
-    /// What is too much for the largest of [`CAPACITIES`]; `None` if the form fits.
+    /// The first number that is too large for the largest of [`CAPACITIES`]; `None` if the form fits.
     pub fn excess(&self) -> Option<Excess> {
         let most = CAPACITIES[CAPACITIES.len() - 1];
         let dimensions = &self.tables.value().dimensions;

@@ -114,7 +114,7 @@ pub(super) fn derive_linkage(
     }
     let whole = model.lagrangian.whole;
     let written = read::read(&mut model.pool, &coordinates.qdot, whole, SQUARES * n)?;
-    let drift = drift_of(model, coordinates, written.rest);
+    let drift = super::field::drift(model, coordinates, written.rest);
     let definitions = written.derived.iter().map(|(_, terms)| &terms[..]);
     let order = order(n, &definitions.collect::<Vec<_>>());
     let places = Places::of(model, coordinates, &written);
@@ -153,16 +153,6 @@ pub(super) fn derive_linkage(
         drift,
     };
     work::is_shorter(model, &linkage, force).then_some(linkage)
-}
-
-/// `d/dt` of `d(rest)/dqdot^k` at fixed velocity.
-fn drift_of(model: &mut Model, coordinates: &Coordinates, rest: ExprId) -> Vec<ExprId> {
-    let motion = coordinates.motion(model);
-    let along = |&velocity| {
-        let momentum = model.pool.diff(rest, velocity);
-        model.pool.derivative_along(momentum, &motion)
-    };
-    coordinates.qdot.iter().map(along).collect()
 }
 
 /// The positions of a linkage.

@@ -1,6 +1,6 @@
 //! Positions that belong to derived velocities: a sum of angles, whose rate is the sum of their rates.
 
-use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
+use dalembert_expr::{Assumption, ExprId, Node, Pool, Rational, SymbolId};
 
 use super::read::Form;
 
@@ -21,7 +21,7 @@ impl Position {
         let mut terms = terms?;
         terms.sort_by_key(|(symbol, _)| *symbol);
         let name = format!("position_{number}");
-        let symbol = pool.symbol(&name, &name, dalembert_expr::Assumption::None);
+        let symbol = pool.symbol(&name, &name, Assumption::None);
         Some(Self { terms, symbol })
     }
 }

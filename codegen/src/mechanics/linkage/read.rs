@@ -7,7 +7,7 @@ use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId};
 
 use super::Part;
 
-/// How many of the last derived velocities are tried as neighbours whose coefficients have to be subtracted.
+/// Number of derived velocities, the last ones, that are tried as neighbours whose coefficients have to be subtracted.
 const NEAR: usize = 4;
 
 /// A Lagrangian `1/2 sum_s c_s x_s^2 + rest`.
@@ -16,7 +16,7 @@ pub(super) struct Written {
     pub derived: Vec<(Form, Vec<(Part, ExprId)>)>,
     /// `x_s` and `c_s`.
     pub squares: Vec<(Part, ExprId)>,
-    /// What is linear in the velocities, or independent of them.
+    /// The terms that are linear in the velocities, or independent of them.
     pub rest: ExprId,
 }
 
@@ -101,20 +101,30 @@ impl Reader<'_> {
         }
     }
 
-    fn product(&mut self, factors: &[(ExprId, Rational)], weight: ExprId) -> Option<()> {
-        let (moving, still): (Vec<_>, Vec<_>) = factors
+    /// The only factor that depends on velocities, its exponent, and the product of `weight` and the others.
+    fn moving_factor(
+        &mut self,
+        factors: &[(ExprId, Rational)],
+        weight: ExprId,
+    ) -> Option<(ExprId, Rational, ExprId)> {
+        let (mut moving, still): (Vec<_>, Vec<_>) = factors
             .iter()
             .cloned()
             .partition(|(base, _)| self.moves(*base));
-        let [(base, exponent)] = &moving[..] else {
+        let (base, exponent) = moving.pop()?;
+        if !moving.is_empty() {
             return None;
-        };
+        }
         let still = self.pool.power_product(&still);
-        let weight = self.pool.mul(weight, still);
+        Some((base, exponent, self.pool.mul(weight, still)))
+    }
+
+    fn product(&mut self, factors: &[(ExprId, Rational)], weight: ExprId) -> Option<()> {
+        let (base, exponent, weight) = self.moving_factor(factors, weight)?;
         match exponent.to_i64() {
-            Some(1) => self.summand(*base, weight),
+            Some(1) => self.summand(base, weight),
             Some(2) => {
-                let form = self.form(*base)?;
+                let form = self.form(base)?;
                 let doubled = self.pool.scale(&Rational::from(2), weight);
                 self.squares.push((form, doubled));
                 Some(())
@@ -147,18 +157,11 @@ impl Reader<'_> {
                     }
                 }
                 Node::Product(factors) => {
-                    let (moving, still): (Vec<_>, Vec<_>) = factors
-                        .iter()
-                        .cloned()
-                        .partition(|(base, _)| self.moves(*base));
-                    let [(base, exponent)] = &moving[..] else {
-                        return None;
-                    };
+                    let (base, exponent, weight) = self.moving_factor(&factors, weight)?;
                     if !exponent.is_one() {
                         return None;
                     }
-                    let still = self.pool.power_product(&still);
-                    pending.push((*base, self.pool.mul(weight, still)));
+                    pending.push((base, weight));
                 }
                 _ => return None,
             }
@@ -258,10 +261,10 @@ impl Forms<'_> {
         let zero = self.pool.zero();
         let mut difference = form.clone();
         for (&i, &value) in &self.derived[w].0 {
-            let own = difference.get(&i).copied().unwrap_or(zero);
-            let rest = match own == value {
+            let coefficient = difference.get(&i).copied().unwrap_or(zero);
+            let rest = match coefficient == value {
                 true => zero,
-                false => self.pool.sub(own, value),
+                false => self.pool.sub(coefficient, value),
             };
             difference.insert(i, rest);
         }
