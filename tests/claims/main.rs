@@ -8,9 +8,10 @@
 //! | `invariance.rs`, `atoms.rs` | independence of verdicts from the notation; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | true and false claims of models; impacts |
 //! | `positions.rs` | models with position equations |
-//! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |
+//! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs`, `abrupt.rs` | nothing is proved by accident |
 //! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by motions |
 
+mod abrupt;
 mod atoms;
 mod conditions;
 mod contradicted;

@@ -34,6 +34,12 @@ pub(super) fn is_barrier(model: &mut Model, equations: &[ExprId], denominator: E
             && has_continuous_flow(model, equations)
 }
 
+/// True if almost all motions avoid the zeros of a function: they have codimension 2 in the states.
+pub(super) fn is_avoided(model: &mut Model, denominator: ExprId) -> bool {
+    let variables = state_variables(model);
+    is_thin(model, denominator, &variables) && !has_gaps(model, denominator)
+}
+
 /// True if the equations of motion are certain to be locally Lipschitz at all states.
 pub(super) fn has_continuous_flow(model: &mut Model, equations: &[ExprId]) -> bool {
     let parts = model.pool.reachable(equations);

@@ -2,7 +2,7 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
-use super::continuity::possible_jump;
+use super::continuity::{discontinuity, possible_jump};
 use super::defaults::Defaults;
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Evidence, Vanishing, Wording, evidence, in_arguments};
@@ -106,13 +106,33 @@ pub(super) fn jump(
 ) -> Option<String> {
     let equations = dynamics.roots();
     possible_jump(model, value, Some(&equations), &mut |model, part| {
-        let rate = Rate {
-            quantity: Quantity::of(model, part),
-            dynamics,
-            written: "",
-        };
-        evidence(model, &rate, seed).shows_that_it_vanishes()
+        is_constant(model, dynamics, part, seed)
     })
+}
+
+/// Description of places where a term of the equations of motion may jump, apart from those where an expression that
+/// `is_harmless` is 0.
+pub(super) fn jump_unless(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    term: ExprId,
+    seed: u64,
+    is_harmless: &dyn Fn(&mut Model, ExprId) -> bool,
+) -> Option<String> {
+    let equations = dynamics.roots();
+    discontinuity(model, term, Some(&equations), &mut |model, part| {
+        is_harmless(model, part) || is_constant(model, dynamics, part, seed)
+    })
+}
+
+/// True if an expression is proved to be constant along every motion.
+pub(super) fn is_constant(model: &mut Model, dynamics: &Dynamics, part: ExprId, seed: u64) -> bool {
+    let rate = Rate {
+        quantity: Quantity::of(model, part),
+        dynamics,
+        written: "",
+    };
+    evidence(model, &rate, seed).shows_that_it_vanishes()
 }
 
 /// A quantity with its derivatives by coordinates, velocities and time.

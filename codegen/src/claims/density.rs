@@ -4,7 +4,7 @@
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, RealPoint, SymbolId,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, Pool, RealPoint, SymbolId,
 };
 
 use super::conserved::{Quantity, jump, magnitude, rate_scale};
@@ -31,6 +31,14 @@ pub(super) fn check_density(
     continuous(model, dynamics, stated.0, verdict, seed)
 }
 
+/// The bases of the factors of a density. Where one of them is 0, nothing is claimed.
+pub(super) fn factors(pool: &Pool, value: ExprId) -> Vec<ExprId> {
+    match pool.node(value) {
+        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![value],
+    }
+}
+
 /// The verdict on the rate of a density, left open if its factors may jump.
 fn continuous(
     model: &mut Model,
@@ -42,12 +50,7 @@ fn continuous(
     if !matches!(verdict, Verdict::Proved(_)) {
         return verdict;
     }
-    // Where a factor is 0 nothing is claimed.
-    let factors: Vec<ExprId> = match model.pool.node(value) {
-        Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
-        _ => vec![value],
-    };
-    let place = factors
+    let place = factors(&model.pool, value)
         .into_iter()
         .find_map(|factor| jump(model, dynamics, factor, seed));
     match place {

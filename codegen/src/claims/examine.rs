@@ -16,8 +16,8 @@ use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
 use super::{
-    alternatives, conserved, corollaries, density, energy, equivariance, impact, integrable,
-    invariant, involution, jumps, kept, symmetry, symplectic,
+    abrupt, alternatives, conserved, corollaries, density, energy, equivariance, impact,
+    integrable, invariant, involution, jumps, kept, symmetry, symplectic,
 };
 use crate::mechanics::Derivation;
 use crate::mechanics::energy::total_energy;
@@ -55,7 +55,7 @@ pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model
     let mut findings: Vec<Finding> = claims
         .iter()
         .map(|claim| match has_states {
-            true => examiner.finding(claim),
+            true => examiner.confirmed(claim),
             false => open(claim, Undecided::Stateless),
         })
         .collect();
@@ -115,6 +115,10 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
         _ => Verdict::Undecided(Undecided::Nonlinear.to_string()),
     };
     let verdicts: Vec<Verdict> = claims.iter().map(verdict).collect();
+    let verdicts = verdicts.into_iter().zip(claims).map(|(verdict, claim)| {
+        abrupt::unless_abrupt(model, derivation, &parts, claim, verdict, seed)
+    });
+    let verdicts: Vec<Verdict> = verdicts.collect();
     let findings = claims.iter().zip(verdicts);
     findings
         .map(|(claim, verdict)| Finding {
@@ -156,6 +160,13 @@ pub fn examine_volume(
         return (Verdict::Undecided(reason), Vec::new(), None);
     }
     let (verdict, remarks) = examiner.existence(Existence::Global);
+    if matches!(verdict, Verdict::Proved(_)) {
+        let (model, around) = examiner.around();
+        let jump = abrupt::breaks_volume(model, derivation, around.dynamics, around.seed);
+        if let Some(jump) = jump {
+            return (Verdict::Undecided(abrupt::reason(&jump)), Vec::new(), None);
+        }
+    }
     // A density found only for indeterminate parameters is not a density at the declared values.
     let is_special = |exactness: &Exactness| {
         !matches!(verdict, Verdict::Proved(_)) && exactness.global == Some(Global::Exists)
@@ -206,6 +217,31 @@ impl<'e> Examiner<'e> {
             decision: None,
             model,
             derivation,
+        }
+    }
+
+    /// The finding on a claim, left open if the equations of motion may jump.
+    fn confirmed(&mut self, claim: &Claim) -> Finding {
+        let found = self.finding(claim);
+        let (model, around) = self.around();
+        let is_closed = !matches!(found.verdict, Verdict::Undecided(_));
+        let parts = std::slice::from_ref(around.dynamics);
+        let verdict = abrupt::unless_abrupt(
+            model,
+            around.derivation,
+            parts,
+            claim,
+            found.verdict,
+            around.seed,
+        );
+        match (is_closed, &verdict) {
+            (true, Verdict::Undecided(_)) => Finding {
+                verdict,
+                remarks: Vec::new(),
+                density: None,
+                ..found
+            },
+            _ => Finding { verdict, ..found },
         }
     }
 

@@ -19,6 +19,7 @@
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `sliding.rs`, `landing.rs` | evidence at impacts; the change of a volume, also in closed form and with sliding; resets that keep the constraints |
+//! | `abrupt.rs` | equations of motion that may jump, and the claims that they leave open |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `definite.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta; certified signs, positive metrics |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of constant time: along the motion, across surfaces, with motion held behind them, on leaves of integrable constraints |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; as many conserved functions in involution as D has dimensions |
@@ -30,6 +31,7 @@
 //! Decisions are taken modulo 61-bit primes at random points. A search in double precision finds points that may prove
 //! a statement. Such a point counts only if an enclosure confirms it.
 
+mod abrupt;
 mod admissible;
 mod alternatives;
 mod ansatz;

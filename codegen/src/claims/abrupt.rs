@@ -1,0 +1,424 @@
+//! Equations of motion that may jump, and the claims that they leave open.
+//!
+//! A claim about the motion is decided by an identity at states where the equations are smooth. A motion that crosses a
+//! place `h = 0` where they jump needs more, because the rate of its state changes by `DX` there, and the derivative of
+//! the flow by the factor `1 + DX dh/(dh X)`.
+//!
+//! - If the metric, a term that is linear in velocities, a constraint or a position equation jumps, the velocities do too,
+//!   and every claim stays open. The same holds where such equations are not regular and have kinks:
+//!   `x*dot(y) = abs(x)*dot(x)` is solved by `dot(y) = abs(x)/x*dot(x)`. A jump of the potential has no force that would
+//!   change the energy, so that claims stay open there too.
+//! - If a force jumps, or a rate of a first-order system, the state is continuous. A smooth quantity whose rate is 0 on both
+//!   sides is conserved, also by motion that slides along the place. A quantity with kinks may change while motion
+//!   slides: `abs(v) + t` under Coulomb friction.
+//! - A jump at which `dh X` is continuous keeps volumes with a continuous density, such as a jump of a force at certain
+//!   positions. It need not keep other forms. A jump of a force at certain velocities changes volumes.
+//! - A kink of the Lagrangian makes forces jump as well. The factor then preserves the symplectic form, as the limit of those
+//!   of smooth Lagrangians. It need not preserve other forms.
+//! - Jumps of potentials and forces at certain times are harmless: every motion has them at the same time.
+//! - Almost all motions avoid sets of codimension 2, such as a centre of attraction. Claims about volumes and forms hold there.
+//! - A symmetry stays open if its flow crosses a jump, and so does a claim about a surface whose gap jumps: the motion meets
+//!   a face that the gap does not describe.
+
+use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
+
+use super::barriers::is_avoided;
+use super::conserved::{is_constant, jump_unless};
+use super::continuity::{is_smooth, may_bend};
+use super::definite::is_regular;
+use super::density::factors;
+use super::dynamics::Dynamics;
+use super::examine::explicit;
+use super::finding::Verdict;
+use super::kept::stated_or_one;
+use crate::mechanics::Derivation;
+use crate::model::{Claim, Existence, Model, Statement};
+
+/// The verdict on a claim about the motion, left open if the equations of motion may jump.
+pub(super) fn unless_abrupt(
+    model: &mut Model,
+    derivation: &Derivation,
+    parts: &[Dynamics],
+    claim: &Claim,
+    verdict: Verdict,
+    seed: u64,
+) -> Verdict {
+    let statement = &claim.statement;
+    let rests_on_smoothness = match statement {
+        Statement::Conserved { holds: false, .. } | Statement::Existence(Existence::None) => {
+            matches!(verdict, Verdict::Refuted(_))
+        }
+        _ => matches!(verdict, Verdict::Proved(_)),
+    };
+    if !rests_on_smoothness {
+        return verdict;
+    }
+    let jump = parts.iter().find_map(|dynamics| {
+        let equations = Equations {
+            derivation,
+            dynamics,
+            seed,
+        };
+        equations.jump(model, statement)
+    });
+    match jump {
+        Some(jump) => Verdict::Undecided(reason(&jump)),
+        None => verdict,
+    }
+}
+
+/// The reason for an open verdict, for what jumps where.
+pub(super) fn reason(jump: &str) -> String {
+    format!("it holds where nothing jumps, but {jump}")
+}
+
+/// What jumps where in a way that may change the volume of the configuration, as text.
+pub(super) fn breaks_volume(
+    model: &mut Model,
+    derivation: &Derivation,
+    dynamics: &Dynamics,
+    seed: u64,
+) -> Option<String> {
+    let equations = Equations {
+        derivation,
+        dynamics,
+        seed,
+    };
+    equations.jump(model, &Statement::Existence(Existence::Global))
+}
+
+/// Places at which a jump leaves a claim intact.
+#[derive(Clone, Copy)]
+struct Harmless<'h> {
+    /// Certain times.
+    at_times: bool,
+    /// Certain times and positions.
+    at_positions: bool,
+    /// Sets of codimension 2 in the states, which almost all motions avoid.
+    at_thin_sets: bool,
+    /// Places that the flow of this field does not cross.
+    along: Option<&'h [ExprId]>,
+    /// Places that a motion with these rates crosses at a rate `dh X` that does not jump.
+    across: Option<&'h [ExprId]>,
+}
+
+impl Harmless<'_> {
+    const NOWHERE: Self = Self {
+        at_times: false,
+        at_positions: false,
+        at_thin_sets: false,
+        along: None,
+        across: None,
+    };
+    const AT_THIN_SETS: Self = Self {
+        at_thin_sets: true,
+        ..Self::NOWHERE
+    };
+    const AT_TIMES: Self = Self {
+        at_times: true,
+        ..Self::AT_THIN_SETS
+    };
+    const AT_POSITIONS: Self = Self {
+        at_positions: true,
+        ..Self::AT_TIMES
+    };
+
+    /// True if an expression whose zeros are the place of a jump makes it harmless.
+    fn allows(&self, model: &mut Model, part: ExprId) -> bool {
+        let positions = model.coordinates.iter().map(|it| it.q);
+        let velocities: Vec<SymbolId> = model.coordinates.iter().map(|it| it.qdot).collect();
+        let states: Vec<SymbolId> = positions.chain(velocities.iter().copied()).collect();
+        let is_free = |symbols: &[SymbolId]| !model.pool.depends_on_any(part, symbols);
+        if is_free(&states) && (self.at_times || is_free(&[model.time]))
+            || self.at_positions && is_free(&velocities)
+        {
+            return true;
+        }
+        if let Some(field) = self.along {
+            let positions = model.coordinates.iter().map(|it| it.q);
+            let flow: Vec<(SymbolId, ExprId)> = positions.zip(field.iter().copied()).collect();
+            let change = model.pool.derivative_along(part, &flow);
+            return model.pool.zero_test(change) == Zero::Proved;
+        }
+        if let Some(rates) = self.across {
+            let positions = model.coordinates.iter().map(|it| it.q);
+            let mut motion: Vec<(SymbolId, ExprId)> =
+                positions.zip(rates.iter().copied()).collect();
+            motion.push((model.time, model.pool.one()));
+            let crossing = model.pool.derivative_along(part, &motion);
+            if !may_bend(model, crossing, &mut |_, _| false) {
+                return true;
+            }
+        }
+        self.at_thin_sets && is_avoided(model, part)
+    }
+}
+
+/// The equations of motion of a model.
+struct Equations<'e> {
+    derivation: &'e Derivation,
+    dynamics: &'e Dynamics,
+    seed: u64,
+}
+
+impl Equations<'_> {
+    /// What may jump where in a way that leaves the statement open, as text.
+    fn jump(&self, model: &mut Model, statement: &Statement) -> Option<String> {
+        let surfaces = model.acting_surfaces();
+        match statement {
+            Statement::Conserved {
+                under: Some(surface),
+                ..
+            }
+            | Statement::Factor { under: surface, .. }
+            | Statement::EnergyNotIncreasing(surface) => {
+                self.on_surfaces(model, &[*surface], Harmless::NOWHERE)
+            }
+            Statement::Conserved { value, .. } => self.on_values(model, &[*value]),
+            Statement::Integrable(functions) => {
+                let values: Vec<ExprId> = functions.iter().map(|it| it.value).collect();
+                self.on_values(model, &values)
+                    .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
+            }
+            Statement::Density(value) => self.of_density(model, Some(*value)),
+            Statement::VolumeKept => {
+                let stated = stated_or_one(model);
+                let is_stated = stated.written.is_some() || model.is_first_order();
+                let motion = match is_stated {
+                    true => self.of_density(model, stated.value),
+                    false => self.of_existence(model),
+                };
+                motion.or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
+            }
+            Statement::Existence(_) => self.of_existence(model),
+            Statement::Symplectic => {
+                let forces = forces(model);
+                self.on_states(model, Harmless::AT_THIN_SETS)
+                    .or_else(|| self.among(model, &forces, Harmless::AT_TIMES))
+                    .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
+            }
+            Statement::Invariant(_) => {
+                let terms = self.terms(model);
+                self.on_states(model, Harmless::AT_THIN_SETS)
+                    .or_else(|| self.among(model, &terms, Harmless::AT_TIMES))
+                    .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
+            }
+            Statement::Symmetry(field) => {
+                let along = Harmless {
+                    along: Some(field),
+                    ..Harmless::NOWHERE
+                };
+                let values = match model.is_first_order() {
+                    true => forces(model),
+                    false => {
+                        let kinematic = self.kinematic(model);
+                        [kinematic, vec![model.lagrangian.whole]].concat()
+                    }
+                };
+                self.among(model, &values, along)
+                    .or_else(|| self.on_surfaces(model, &surfaces, along))
+            }
+            Statement::Involution(_) => None,
+        }
+    }
+
+    /// What jumps where so that a stated density is open.
+    fn of_density(&self, model: &mut Model, value: Option<ExprId>) -> Option<String> {
+        let forces = forces(model);
+        let values: Vec<ExprId> = value.into_iter().collect();
+        let values = written_out(model, &values);
+        let values = values
+            .into_iter()
+            .flat_map(|value| factors(&model.pool, value));
+        let values: Vec<ExprId> = values.collect();
+        // Where a density of mechanics jumps by itself was tested with its balance.
+        if model.is_first_order()
+            && let Some(jump) = self.among(model, &values, Harmless::NOWHERE)
+        {
+            return Some(jump);
+        }
+        let harmless = match model.is_first_order() {
+            true => Harmless {
+                across: Some(&forces),
+                ..Harmless::AT_TIMES
+            },
+            false => Harmless::AT_POSITIONS,
+        };
+        self.on_states(model, Harmless::AT_THIN_SETS)
+            .or_else(|| self.among(model, &forces, harmless))
+    }
+
+    /// A place where a density that is looked for is open: it need not be continuous where the derivatives of its logarithm
+    /// jump.
+    fn of_existence(&self, model: &mut Model) -> Option<String> {
+        if let Some(place) = self.of_density(model, None) {
+            return Some(place);
+        }
+        let terms = match model.constraints.is_empty() {
+            true => {
+                let velocities: Vec<SymbolId> =
+                    model.coordinates.iter().map(|it| it.qdot).collect();
+                let slope = |force: ExprId| velocities.iter().map(move |by| (force, *by));
+                let slopes: Vec<(ExprId, SymbolId)> =
+                    forces(model).into_iter().flat_map(slope).collect();
+                let slopes = slopes
+                    .into_iter()
+                    .map(|(force, by)| model.pool.diff(force, by));
+                slopes.collect()
+            }
+            false => self.terms(model),
+        };
+        self.among(model, &terms, Harmless::AT_TIMES)
+    }
+
+    /// A place where the conservation of these values is open.
+    fn on_values(&self, model: &mut Model, values: &[ExprId]) -> Option<String> {
+        if let Some(place) = self.on_states(model, Harmless::NOWHERE) {
+            return Some(place);
+        }
+        let values = written_out(model, values);
+        let is_smooth = |value: &ExprId| is_smooth(model, *value);
+        if values.iter().all(is_smooth) {
+            return None;
+        }
+        let forces = forces(model);
+        let at_times = Harmless {
+            at_thin_sets: false,
+            ..Harmless::AT_TIMES
+        };
+        self.among(model, &values, Harmless::NOWHERE)
+            .or_else(|| self.among(model, &forces, at_times))
+    }
+
+    /// A place where the motion is open because the Lagrangian, a constraint or a position equation jumps, or has a kink and
+    /// is not regular. At jumps of the potential the velocities are continuous.
+    fn on_states(&self, model: &mut Model, kinematic: Harmless<'_>) -> Option<String> {
+        if model.is_first_order() {
+            return None;
+        }
+        let values = self.kinematic(model);
+        let potential = [model.lagrangian.potential];
+        if let Some(place) = self
+            .among(model, &values, kinematic)
+            .or_else(|| self.among(model, &potential, Harmless::AT_TIMES))
+        {
+            return Some(place);
+        }
+        let metric = model.lagrangian.metric.clone();
+        if self.bends(model, &metric) && !is_regular(model, &metric) {
+            return Some(motion_jumps("where the metric is singular"));
+        }
+        let forms: Vec<Vec<ExprId>> = (self.derivation.constraints.iter())
+            .map(|constraint| constraint.form.clone())
+            .collect();
+        let is_open = self.bends(model, &forms) && !are_independent(model, forms);
+        is_open.then(|| motion_jumps("where the constraints are not independent"))
+    }
+
+    /// A place where one of these surfaces may jump.
+    fn on_surfaces(
+        &self,
+        model: &mut Model,
+        surfaces: &[usize],
+        harmless: Harmless<'_>,
+    ) -> Option<String> {
+        surfaces.iter().find_map(|surface| {
+            let gap = model.surfaces[*surface].gap;
+            let place = self.place(model, gap, harmless)?;
+            let name = &model.surfaces[*surface].name.display;
+            Some(format!("the gap of `{name}` may jump {place}"))
+        })
+    }
+
+    /// The expressions that relate velocities and momenta: the metric, the terms of the Lagrangian that are linear in the
+    /// velocities, the constraints and the position equations.
+    fn kinematic(&self, model: &Model) -> Vec<ExprId> {
+        let lagrangian = &model.lagrangian;
+        let mut values: Vec<ExprId> = lagrangian.metric.iter().flatten().copied().collect();
+        values.extend(&lagrangian.linear);
+        for constraint in &self.derivation.constraints {
+            values.extend(&constraint.form);
+            values.push(constraint.affine);
+        }
+        values.extend(model.constraints.iter().filter_map(|it| it.level));
+        values
+    }
+
+    /// True if some entry may have a kink along a motion.
+    fn bends(&self, model: &mut Model, rows: &[Vec<ExprId>]) -> bool {
+        let entries: Vec<ExprId> = rows.iter().flatten().copied().collect();
+        entries.into_iter().any(|entry| {
+            may_bend(model, entry, &mut |model, part| {
+                is_constant(model, self.dynamics, part, self.seed)
+            })
+        })
+    }
+
+    /// Forces, derivatives of the Lagrangian, and curvatures of the constraints; for a first-order system its rates.
+    fn terms(&self, model: &mut Model) -> Vec<ExprId> {
+        let mut terms = forces(model);
+        if !model.is_first_order() {
+            let [_, motion] = self.dynamics.equations();
+            terms.extend(motion.iter().flatten());
+        }
+        terms
+    }
+
+    /// A place where one of these terms may jump, unless that is harmless.
+    fn among(&self, model: &mut Model, terms: &[ExprId], harmless: Harmless<'_>) -> Option<String> {
+        let mut places = terms.iter().map(|term| self.place(model, *term, harmless));
+        let place = places.find_map(|place| place)?;
+        Some(motion_jumps(&place))
+    }
+
+    /// A place where an expression may jump, unless that is harmless.
+    fn place(&self, model: &mut Model, term: ExprId, harmless: Harmless<'_>) -> Option<String> {
+        jump_unless(model, self.dynamics, term, self.seed, &|model, part| {
+            harmless.allows(model, part)
+        })
+    }
+}
+
+/// Expressions with energy, momenta and, for a first-order system, rates written out.
+fn written_out(model: &mut Model, values: &[ExprId]) -> Vec<ExprId> {
+    let values: Vec<ExprId> = values.iter().map(|it| explicit(model, *it)).collect();
+    let Some(rates) = model.field.clone() else {
+        return values;
+    };
+    let velocities = model.coordinates.iter().map(|it| it.qdot);
+    let rates: Vec<(SymbolId, ExprId)> = velocities.zip(rates).collect();
+    model.pool.substitute_all(&values, &rates)
+}
+
+fn motion_jumps(place: &str) -> String {
+    format!("the equations of motion may jump {place}")
+}
+
+/// The components of all named forces; for a first-order system its rates.
+fn forces(model: &Model) -> Vec<ExprId> {
+    match &model.field {
+        Some(rates) => rates.clone(),
+        None => (model.forces.iter())
+            .flat_map(|force| force.form.iter().copied())
+            .collect(),
+    }
+}
+
+/// True if constraints are certain to be independent at all states: one after the other has a component that is never 0,
+/// in a coordinate that does not occur in those that are left.
+fn are_independent(model: &Model, mut forms: Vec<Vec<ExprId>>) -> bool {
+    let is_zero = |entry: ExprId| model.pool.zero_test(entry) == Zero::Proved;
+    let is_never_zero = |entry: ExprId| model.pool.sign(entry).is_nonzero();
+    while let Some(n) = forms.first().map(Vec::len) {
+        let found = (0..n).find_map(|i| {
+            let mut rows = (0..forms.len()).filter(|a| !is_zero(forms[*a][i]));
+            let row = rows.next().filter(|a| is_never_zero(forms[*a][i]))?;
+            rows.next().is_none().then_some(row)
+        });
+        match found {
+            Some(row) => drop(forms.swap_remove(row)),
+            None => return false,
+        }
+    }
+    true
+}
