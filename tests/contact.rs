@@ -621,3 +621,55 @@ fn hops_on_a_rising_floor_end_in_a_hold_at_their_limit() {
         }
     }
 }
+
+/// A point that a curved wall stops and lets go at once: the gap has no rate then, and rises by its curvature.
+static ROUND: Text = Text::new(
+    "Round {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { w: x^2 + y^2 <= 2 => impact_plastic; }
+    }",
+);
+
+/// The same above a wavy floor.
+static WAVES: Text = Text::new(
+    "Waves {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { w: y >= 0.3*cos(3*x) => impact_plastic; }
+    }",
+);
+
+#[test]
+fn a_wall_that_was_left_without_a_rate_is_met_again() {
+    // The times of both impacts are those of small fixed steps.
+    for (text, q, qdot, times) in [
+        (
+            &ROUND,
+            [0.22, 0.13],
+            [0.82, 1.14],
+            [1.170_863_224, 2.059_025_119],
+        ),
+        (
+            &WAVES,
+            [0.3, 0.8],
+            [2.02, -0.3],
+            [0.791_252_953, 2.293_918_789],
+        ),
+    ] {
+        let model = text.model();
+        for &integrator in Integrator::every() {
+            let course = Course::new(&model, &q, &qdot, 2.4)
+                .tol(1e-10)
+                .step(1e-2)
+                .resting();
+            let end = course.run(Setting::free(integrator));
+            let name = integrator.name();
+            assert_eq!(end.outcome, Outcome::Done, "{name}");
+            assert_eq!(end.hits.len(), 2, "{name}");
+            for (hit, right) in end.hits.iter().zip(times) {
+                assert!((hit.t - right).abs() < 1e-5, "{name}: {}", hit.t);
+            }
+        }
+    }
+}

@@ -231,6 +231,16 @@ pub trait Effect<Sys: System> {
         Ok(Change::Kept)
     }
 
+    /// Called where a step was cut at `theta`, after settling moved the state. Gives the time until the settled motion meets
+    /// what this effect proposed, which may be negative; `None` if it does so here, or if another effect proposed the cut.
+    ///
+    /// # Errors
+    /// The [`Outcome`] that ends the run here.
+    fn aim(&mut self, theta: f64, now: &mut Moment<'_, Sys>) -> Result<Option<f64>, Outcome> {
+        let _ = (theta, now);
+        Ok(None)
+    }
+
     /// Acts where the step was cut, at the fraction `theta` proposed by this effect or by another.
     ///
     /// # Errors
@@ -396,6 +406,13 @@ impl<Sys: System, E: Effect<Sys>> Effect<Sys> for Option<E> {
         }
     }
 
+    fn aim(&mut self, theta: f64, now: &mut Moment<'_, Sys>) -> Result<Option<f64>, Outcome> {
+        match self {
+            Some(effect) => effect.aim(theta, now),
+            None => Ok(None),
+        }
+    }
+
     fn act<O: Observer<Sys>>(
         &mut self,
         theta: f64,
@@ -511,6 +528,16 @@ macro_rules! compose {
                 let mut change = Change::Kept;
                 $(change = change.or(self.$index.settle(now, cut)?);)+
                 Ok(change)
+            }
+
+            fn aim(
+                &mut self,
+                theta: f64,
+                now: &mut Moment<'_, Sys>,
+            ) -> Result<Option<f64>, Outcome> {
+                let mut aimed = None;
+                $(aimed = aimed.or(self.$index.aim(theta, now)?);)+
+                Ok(aimed)
             }
 
             #[inline]

@@ -23,6 +23,10 @@ pub const STEP_BUDGET: u64 = 1_000_000_000;
 /// Longest step after an impact, as a multiple of the last flight: shrinking hops get steps of their own size.
 const FLIGHTS: f64 = 4.0;
 
+/// Maximum number of times that a settled state is moved to what was proposed. Newton's iteration doubles the number of
+/// correct digits each time.
+const AIMS: u32 = 4;
+
 /// A step during which a force acts only between two stages is repeated. The repeated step ends before the force if
 /// that leaves at least this fraction of the length, and has this fraction of the length otherwise.
 const AHEAD: f64 = 1.0 / 8.0;
@@ -403,7 +407,14 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             state: &mut self.progress.state,
             counters: &mut self.progress.counters,
         };
-        if self.effects.settle(&mut now, false)? == Change::Changed {
+        let settled = self.effects.settle(&mut now, false);
+        if let Err(outcome) = settled {
+            // The run ends where the motion arrived.
+            self.progress.state = *self.stepper.end_state();
+            self.show(1.0, observer)?;
+            return Err(outcome);
+        }
+        if settled? == Change::Changed {
             self.stepper.replace_end(
                 self.system,
                 &self.progress.state,
@@ -428,17 +439,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
         let limit = FLIGHTS * (self.progress.flight + theta * self.stepper.length());
         self.progress.flight = 0.0;
-        self.arrive(theta)?;
-        if let Some(coordinate) = self.system.outside_chart(&self.progress.state) {
-            return Err(self.leave_chart_before(theta, coordinate, observer));
-        }
-        let mut now = Moment {
-            system: self.system,
-            t: self.progress.t,
-            state: &mut self.progress.state,
-            counters: &mut self.progress.counters,
-        };
-        self.effects.settle(&mut now, true)?;
+        self.arrive_settled(theta, observer)?;
         self.show(theta, observer)?;
         let mut now = Moment {
             system: self.system,
@@ -448,6 +449,51 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         };
         self.effects.act(theta, &mut now, observer)?;
         Ok(limit)
+    }
+
+    /// Sets time and state to those where the settled motion meets what was proposed at `theta`.
+    fn arrive_settled<O: Observer<Sys>>(
+        &mut self,
+        theta: f64,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.arrive(theta)?;
+        if let Some(coordinate) = self.system.outside_chart(&self.progress.state) {
+            return Err(self.leave_chart_before(theta, coordinate, observer));
+        }
+        for is_last in (0..=AIMS).map(|count| count == AIMS) {
+            let arrived = self.progress.state;
+            let mut now = Moment {
+                system: self.system,
+                t: self.progress.t,
+                state: &mut self.progress.state,
+                counters: &mut self.progress.counters,
+            };
+            match self.effects.settle(&mut now, true) {
+                Err(outcome) => {
+                    // The run ends where the motion arrived.
+                    self.progress.state = arrived;
+                    self.show(theta, observer)?;
+                    return Err(outcome);
+                }
+                Ok(Change::Kept) => break,
+                Ok(Change::Changed) if is_last => break,
+                Ok(Change::Changed) => {}
+            }
+            let Some(late) = self.effects.aim(theta, &mut now)? else {
+                break;
+            };
+            // So short a way is straight.
+            let mut rate = now.state.zeroed();
+            now.counters.rate_evaluations += 1;
+            now.system.rate(now.t, now.state, &mut rate)?;
+            for (entry, rate) in now.state.as_mut_slice().iter_mut().zip(rate.as_slice()) {
+                *entry += late * rate;
+            }
+            let there = self.progress.now().after(late);
+            self.progress.set_time(there);
+        }
+        Ok(())
     }
 
     /// Sets time and state to those at `theta`.

@@ -421,6 +421,7 @@ impl Mul for TaylorModel {
 
     fn mul(self, other: Self) -> Self {
         match (self.is_steady(), other.is_steady()) {
+            (true, true) => Self::steady(self.range() * other.range()),
             (_, true) => self.scaled(other),
             (true, _) => other.scaled(self),
             _ => self.times(other, false),
@@ -488,7 +489,7 @@ impl Numbers for TaylorModel {
 
     fn square(self) -> Self {
         match self.is_steady() {
-            true => self.scaled(self).nonnegative(),
+            true => Self::steady(self.range().square()),
             false => self.times(self, true),
         }
     }

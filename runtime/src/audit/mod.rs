@@ -58,6 +58,9 @@ const NEAR: f64 = 64.0;
 /// The same tolerance for simultaneous impacts, where rounding errors of earlier steps add up along the flight.
 const BESIDE: f64 = 64.0 * NEAR;
 
+/// Bound of the errors of a gap along a step, as a multiple of that which a projection corrects at its end.
+const MOVED: f64 = 2.0;
+
 /// Allowed decrease of a gap in every step along its surface, as a fraction of the gap's rounding error.
 const DRIFT: f64 = 1.0 / 16.0;
 
@@ -141,13 +144,18 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
     /// Audits the gap of one surface along the present step, up to the fraction `part` of it and the state `end`.
     fn follow(&mut self, surface: usize, part: f64, end: &Sys::State) {
         let is_passable = self.is_passable(surface);
+        // A projection that moves the end shows by how much the gaps along the step are wrong.
+        let t = self.motion.time_at(part);
+        let [arrived, kept] = [&self.motion.state(part), end]
+            .map(|state| self.system.gaps(t, state).as_slice()[surface]);
+        let moved = (kept - arrived).abs();
         let slack = &mut self.slack.as_mut_slice()[surface];
         let scan = Scan {
             system: self.system,
             motion: &self.motion,
             surface,
             is_passable,
-            slack: *slack,
+            slack: slack.max(MOVED * moved),
         };
         if !is_passable && scan.along([0.0, part]).value.lo > 0.0 {
             *slack = 0.0;
@@ -161,12 +169,8 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         *slack = match gap.lo > 0.0 {
             true => 0.0,
             false => {
-                // A projection that moves the end moves the gap as well.
-                let t = self.motion.time_at(part);
-                let [arrived, kept] = [&self.motion.state(part), end]
-                    .map(|state| self.system.gaps(t, state).as_slice()[surface]);
                 let floor = scan::floor(gap);
-                slack.max(floor) + DRIFT * floor + (kept - arrived).abs()
+                slack.max(floor) + DRIFT * floor + moved
             }
         };
     }

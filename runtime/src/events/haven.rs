@@ -1,7 +1,9 @@
 //! A box of times and states in which no gap vanishes: steps inside it need no event location.
 //!
-//! An enclosure of every gap over the box proves this, so it holds for any motion in the box. Boxes grow where motion
-//! stays far from all surfaces, and are tried ever more rarely where it does not.
+//! An enclosure of every gap over the box proves this, so it holds for any motion in the box. A motion that leaves the box
+//! extends it, so that a bounded motion far from all surfaces is soon in one box for good. Where this fails, a new box is
+//! tried around the step. It grows where motion stays far from all surfaces, and is tried ever more rarely where it does
+//! not.
 
 use core::cell::Cell;
 
@@ -21,6 +23,9 @@ const MOST_MARGIN: f64 = 1024.0;
 #[derive(Debug, Clone)]
 pub(crate) struct Haven<S> {
     room: Room<S>,
+    /// Number of boxes to make before one is extended again, and the number that the last failure set.
+    renewals: u32,
+    caution: u32,
     /// Size of the next box, as a multiple of the distance covered in a step.
     margin: f64,
     /// Number of steps to skip before the next trial, and the number that the last trial set.
@@ -33,6 +38,8 @@ impl<S: StateVector> Haven<S> {
     pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
             room: Room::new(positions, like),
+            renewals: 0,
+            caution: 0,
             margin: 4.0,
             wait: 0,
             patience: 0,
@@ -68,7 +75,39 @@ impl<S: StateVector> Haven<S> {
             return;
         }
         path.enclose();
+        if self.room.is_known() && self.renewals == 0 {
+            self.room.extend(path);
+            if self.is_free(system, path, &is_passable, evaluations) {
+                (self.caution, self.patience, self.wait) = (0, 0, 0);
+                return;
+            }
+            self.caution = (2 * self.caution + 1).min(MOST_PATIENCE);
+            self.renewals = self.caution;
+        }
+        self.renewals = self.renewals.saturating_sub(1);
         self.room.surround(path, self.margin);
+        match self.is_free(system, path, &is_passable, evaluations) {
+            true => {
+                self.margin = (2.0 * self.margin).min(MOST_MARGIN);
+                self.patience = 0;
+            }
+            false => {
+                self.room.forget();
+                self.margin = (0.5 * self.margin).max(1.0);
+                self.patience = (2 * self.patience + 1).min(MOST_PATIENCE);
+            }
+        }
+        self.wait = self.patience;
+    }
+
+    /// True if no gap vanishes in the box. Restricts the box to the coordinates that the gaps depend on.
+    fn is_free<Sys: Impacting<State = S>>(
+        &mut self,
+        system: &Sys,
+        path: &Path<S>,
+        is_passable: &impl Fn(usize) -> bool,
+        evaluations: &mut u64,
+    ) -> bool {
         let room = &self.room;
         let taken = Cell::new(0_u64);
         let component = |i: usize| match i < room.positions() {
@@ -86,17 +125,6 @@ impl<S: StateVector> Haven<S> {
         *evaluations += 1;
         let are_off = (0..system.surface_count()).all(is_off);
         self.room.keep(taken.get());
-        match are_off {
-            true => {
-                self.margin = (2.0 * self.margin).min(MOST_MARGIN);
-                self.patience = 0;
-            }
-            false => {
-                self.room.forget();
-                self.margin = (0.5 * self.margin).max(1.0);
-                self.patience = (2 * self.patience + 1).min(MOST_PATIENCE);
-            }
-        }
-        self.wait = self.patience;
+        are_off
     }
 }

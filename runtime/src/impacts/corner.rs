@@ -2,6 +2,7 @@
 
 use super::hits::{Hits, Order};
 use super::impulse::Impacts;
+use super::quiet::{energy_size, quieten_beside};
 use super::strike::STILL;
 use crate::contract::Impacting;
 use crate::effects::Moment;
@@ -16,7 +17,11 @@ const LONGEST: u32 = 100;
 
 /// Two changes of velocity count as equal if the energy of their difference is below this multiple of the larger of
 /// their energies: the square of `2^-40`, the rounding errors in corners of small angles.
-const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
+pub(super) const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
+
+/// Two velocities are equal within rounding if the energy of their difference is below this multiple of the energy: the
+/// square of 16 roundings.
+pub(super) const EQUAL: f64 = 1.0 / (1_u128 << 96) as f64;
 
 /// Knowledge of the order of the impacts at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +71,7 @@ impl<S: StateVector> Recurrence<S> {
         }
         let is_back = match &self.kept {
             Some(kept) => {
-                let system = now.system;
-                let velocity = system.velocity(now.t, now.state)?;
-                let momentum = system.momentum(now.t, now.state)?;
-                let pairs = velocity.as_slice().iter().zip(momentum.as_slice());
-                let size: f64 = pairs.map(|(v, p)| (v * p).abs()).sum();
+                let size = energy_size(now)?.ok_or(Outcome::FirstOrder)?;
                 energy_apart(now, kept, now.state)? <= SAME * size
             }
             None => false,
@@ -167,7 +168,8 @@ impl<Sys: Impacting> Impacts<Sys> {
             &descending,
             now.state,
         )?);
-        Ok(difference <= SAME * changes)
+        let rounding = energy_size(now)?.map_or(0.0, |size| EQUAL * size);
+        Ok(difference <= (SAME * changes).max(rounding))
     }
 
     /// The state after the impacts in a given order; `None` if they do not end.
@@ -196,8 +198,16 @@ impl<Sys: Impacting> Impacts<Sys> {
                 // A reset has left the corner.
                 return Ok(Some(struck.after));
             }
+            let before = (state, rates);
             (state, rates) = (struck.after, struck.rates);
             hits.set_still(surface, -rates.as_slice()[surface]);
+            let there = Moment {
+                system: now.system,
+                t: now.t,
+                state: &mut state,
+                counters: now.counters,
+            };
+            quieten_beside(&mut hits, surface, [&before.1, &rates], &before.0, &there)?;
             self.watch.add_touching(&mut hits, &rates, now)?;
         }
         Ok(None)
@@ -205,7 +215,7 @@ impl<Sys: Impacting> Impacts<Sys> {
 }
 
 /// Twice the kinetic energy of the difference between the velocities of two states.
-fn energy_apart<Sys: Impacting>(
+pub(super) fn energy_apart<Sys: Impacting>(
     now: &Moment<'_, Sys>,
     a: &Sys::State,
     b: &Sys::State,

@@ -138,6 +138,11 @@ impl<G: StateVector> Hits<G> {
         core::mem::replace(&mut self.struck[surface], true)
     }
 
+    /// True if a surface is approached at any rate.
+    pub(super) fn has_fallen(&self, surface: usize) -> bool {
+        self.still[surface] == Still::Fallen
+    }
+
     /// Marks a surface as approached at any rate, because its gap has passed through 0.
     pub(super) fn set_fallen(&mut self, surface: usize) {
         self.still[surface] = Still::Fallen;

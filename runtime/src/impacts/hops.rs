@@ -10,11 +10,16 @@ pub(super) const SHRUNK: u32 = 3;
 /// one of them.
 const STEEP: f64 = 0.125;
 
+/// Largest time from an impact to the end of the hops, in lengths of the flight before it. A larger estimate stems from
+/// flights whose gap rates have stopped to shrink.
+const FARTHEST: f64 = (1 << 20) as f64;
+
 /// Record of successive impacts on one surface from which the motion bounced off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hops {
     last: Option<Impact>,
-    end: Option<Estimate>,
+    /// The end, estimated from the gap rates and from the lengths of the flights.
+    ends: [Option<Estimate>; 2],
 }
 
 /// An impact, with the flight before it.
@@ -46,15 +51,15 @@ pub(super) struct Flight {
 
 /// The time at which hops end, estimated as the limit of a geometric series.
 ///
-/// The estimate is inaccurate while the ratio of the gap rates still changes, and again when the flights consist of
+/// The estimate is inaccurate while the ratio still changes, and again when the flights consist of
 /// rounding errors. Between these two phases, successive estimates agree best.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Estimate {
     /// The last estimate.
     last: f64,
     best: f64,
-    /// Difference between the best estimate and its predecessor; `None` for the first.
-    spread: Option<f64>,
+    /// Difference between the best estimate and its predecessor; infinite for the first.
+    spread: f64,
 }
 
 /// True if a length is less than the one before it, or if there is none before it.
@@ -65,7 +70,7 @@ pub(super) fn is_shorter(length: f64, before: Option<f64>) -> bool {
 impl Hops {
     pub(super) const NONE: Self = Self {
         last: None,
-        end: None,
+        ends: [None; 2],
     };
 
     /// Records an impact. Returns the flight that it ended; `None` for the first impact, or for another one at the
@@ -84,9 +89,15 @@ impl Hops {
             return None;
         }
         let flight = self.last.map(|last| last.flight(t, [arrival, rate]));
-        self.end = match flight {
-            Some(flight) if flight.shrunk > 0 => Estimate::refined(self.end, flight.end(t)),
-            _ => None,
+        self.ends = match flight {
+            Some(flight) if flight.shrunk > 0 => {
+                let [by_rates, by_lengths] = flight.ends(t);
+                [
+                    Estimate::refined(self.ends[0], by_rates),
+                    Estimate::refined(self.ends[1], by_lengths),
+                ]
+            }
+            _ => [None; 2],
         };
         self.last = Some(Impact {
             t,
@@ -104,7 +115,14 @@ impl Hops {
 
     /// The time at which the hops end; at least the time `t` of the last impact.
     pub(super) fn end(&self, t: f64) -> f64 {
-        self.end.map_or(t, |end| end.best.max(t))
+        let length = self.last.and_then(|last| last.length).unwrap_or(0.0);
+        let is_near = |end: &Estimate| end.best - t <= FARTHEST * length;
+        let ends = self.ends.into_iter().flatten().filter(is_near);
+        let closest = ends.reduce(|first, second| match second.spread < first.spread {
+            true => second,
+            false => first,
+        });
+        closest.map_or(t, |end| end.best.max(t))
     }
 }
 
@@ -144,11 +162,15 @@ impl Flight {
         is_shrinking && 0.25 * rate * next <= rounding()
     }
 
-    /// End of all flights after this one, which ends at `t`, if they shrink by the same factor.
-    fn end(&self, t: f64) -> Option<f64> {
-        let factor = self.factor();
-        let end = t + self.length * factor / (1.0 - factor);
-        (factor > 0.0 && factor < 1.0 && end.is_finite()).then_some(end)
+    /// End of all flights after this one, which ends at `t`, if they shrink by the same factor: by that of the gap rates,
+    /// and by that of the lengths. Gap rates need not shrink, where a motion is squeezed between two surfaces.
+    fn ends(&self, t: f64) -> [Option<f64>; 2] {
+        let by_lengths = self.before.map(|before| self.length / before);
+        [Some(self.factor()), by_lengths].map(|factor| {
+            let factor = factor?;
+            let end = t + self.length * factor / (1.0 - factor);
+            (factor > 0.0 && factor < 1.0 && end.is_finite()).then_some(end)
+        })
     }
 }
 
@@ -162,15 +184,15 @@ impl Estimate {
             return Some(Self {
                 last: guess,
                 best: guess,
-                spread: None,
+                spread: f64::INFINITY,
             });
         };
         let apart = (guess - before.last).abs();
-        Some(match is_shorter(apart, before.spread) {
+        Some(match apart < before.spread {
             true => Self {
                 last: guess,
                 best: guess,
-                spread: Some(apart),
+                spread: apart,
             },
             false => Self {
                 last: guess,

@@ -276,6 +276,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         }
     }
 
+    fn aim(&mut self, theta: f64, now: &mut Moment<'_, Sys>) -> Result<Option<f64>, Outcome> {
+        self.watch.aim(theta, now)
+    }
+
     fn act<O: Observer<Sys>>(
         &mut self,
         theta: f64,

@@ -16,6 +16,7 @@ mod instantaneous;
 mod kinks;
 mod passing;
 mod place;
+mod quiet;
 mod release;
 mod repeats;
 mod resting;

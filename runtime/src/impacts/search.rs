@@ -353,9 +353,10 @@ impl<Sys: Impacting> Watch<Sys> {
             return false;
         }
         let rounding = self.rounding_at(surface, part, step);
-        if slope > 0.0 {
-            return rise <= rounding;
+        if rise > rounding {
+            return false;
         }
+        // The gap may have risen by its curvature.
         step.counters.enclosures += 1;
         self.path.enclose();
         let (path, part) = (&self.path, [0.0, part]);

@@ -7,6 +7,7 @@ use super::corner::Recurrence;
 use super::hits::Hits;
 use super::impulse::Impacts;
 use super::instantaneous::focused;
+use super::quiet::{quieten_beside, quieten_held};
 use super::resting::is_at_rest;
 use super::sliding::Slide;
 use crate::contract::Impacting;
@@ -91,6 +92,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             // It is part of the motion.
             hits.set_done(slide.back);
         }
+        quieten_held(&mut hits, self.resting.held(), &rates, now)?;
         let mut several = hits.approached(&rates) > 1;
         let mut verdict = self.verdict();
         let mut passages = Passages(0);
@@ -115,7 +117,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 still,
                 again: hits.note_struck(surface),
             };
-            let arrived = *now.state;
+            let (arrived, rates_before) = (*now.state, rates);
             let next;
             (rates, next) = self.impact(strike, now, observer)?;
             if is_map {
@@ -137,6 +139,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             } else {
                 // A gap rate that is still negative here is a rounding error.
                 hits.set_still(surface, -rates.as_slice()[surface]);
+                quieten_beside(&mut hits, surface, [&rates_before, &rates], &arrived, now)?;
                 self.watch.touch(&mut hits, &rates, now)?;
                 if recurrence.add(now)? {
                     return Err(Outcome::Zeno { t: now.t, surface });

@@ -35,6 +35,9 @@ pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 /// Depth, in units of the rounding of the gap, up to which a wall may be touched after many steps along it.
 const DRIFT: f64 = 1024.0;
 
+/// Largest correction of the time of a cut, as a fraction of the step.
+const LARGEST_AIM: f64 = 1.0 / 64.0;
+
 /// Maximum number of surfaces for which the polynomials of the gaps are tested first, if the step is a power series.
 const FEW: usize = 8;
 
@@ -318,6 +321,30 @@ impl<Sys: Impacting> Watch<Sys> {
         let checked = self.check_negative(now);
         self.sizes = *now.state;
         checked
+    }
+
+    /// The time until the settled motion meets the surface that was proposed, by a step of Newton's method; `None` if it
+    /// does so here, within the rounding of the gap, or if the gap does not show it.
+    pub(super) fn aim(
+        &self,
+        theta: f64,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Option<f64>, Outcome> {
+        let is_met = |part: Option<f64>| self.proposed.is_some() && part == Some(theta);
+        let Some(surface) = self.parts.iter().position(is_met) else {
+            return Ok(None);
+        };
+        if self.grazes[surface] != Graze::None || self.is_shown_by_values[surface] {
+            return Ok(None);
+        }
+        let gap = measured(now)?.as_slice()[surface];
+        if gap.abs() <= rounding(now, surface, &self.sizes) {
+            return Ok(None);
+        }
+        let rate = now.system.gap_rates(now.t, now.state)?.as_slice()[surface];
+        let late = -gap / rate;
+        let is_near = rate < 0.0 && late.abs() <= LARGEST_AIM * self.length;
+        Ok(is_near.then_some(late))
     }
 
     /// The surfaces hit at the cut of the step: those found there, and those whose gaps are 0 there within rounding.

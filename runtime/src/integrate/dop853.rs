@@ -35,6 +35,7 @@ impl Scheme for Dop853Scheme {
     const NODES: &'static [f64] = &NODES;
     const LAST: usize = 12;
     const ERROR_TAKES_LAST: bool = false;
+    const DENSE_ERROR: f64 = 1024.0;
     const CONTROL: Control = Control {
         power: 8.0,
         beta: 0.0,

@@ -87,6 +87,7 @@ impl Scheme for DormandPrince5Scheme {
     const NODES: &'static [f64] = &NODES;
     const LAST: usize = 6;
     const ERROR_TAKES_LAST: bool = true;
+    const DENSE_ERROR: f64 = 1.0;
     const CONTROL: Control = Control {
         power: 5.0,
         beta: 0.04,

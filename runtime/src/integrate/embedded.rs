@@ -11,13 +11,24 @@ use super::ends::Ends;
 use super::instant::Instant;
 use super::precise::Precise;
 use super::stats::Counters;
-use super::stepper::{StepFailure, Stepper};
+use super::stepper::{GapAt, StepFailure, Stepper};
 use super::tableau::{Term, sum};
 use super::tolerance::Tolerance;
 use crate::contract::VectorField;
 use crate::error::Fault;
 use crate::jet::LENGTH;
 use crate::state::StateVector;
+
+/// Maximum number of times that a step is repeated to end on a surface.
+const ARRIVALS: u32 = 4;
+
+/// Largest distance in time, relative to the step, over which the motion to the surface is straight to rounding: the square
+/// root of the rounding.
+const STRAIGHT: f64 = 1.0 / (1 << 26) as f64;
+
+/// Largest accepted difference between the length of a step that ends on a surface and the length from dense output,
+/// relative to the step.
+const BESIDE: f64 = 1.0 / 64.0;
 
 /// A vector field that counts its evaluations.
 pub struct Counted<'a, F> {
@@ -74,6 +85,8 @@ pub trait Scheme {
     const LAST: usize;
     /// True if the error estimate uses the stage [`Scheme::LAST`].
     const ERROR_TAKES_LAST: bool;
+    /// Largest error of dense output inside a step, as a multiple of the error of the step. Observed, not a bound.
+    const DENSE_ERROR: f64;
     /// Constants of the step-size control.
     #[doc(hidden)]
     const CONTROL: Control;
@@ -257,6 +270,40 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
+    /// Repeats the last step so that it ends on a surface; see [`Stepper::meet`]. `None` if that fails.
+    ///
+    /// NOTE: the state at the end of a step is of higher order than dense output. Where every flight ends with an impact,
+    /// dense output would determine the accuracy of the whole run.
+    fn arrive<F: VectorField<State = S>>(
+        &mut self,
+        field: &mut Counted<'_, F>,
+        theta: f64,
+        gap: &GapAt<'_, S>,
+    ) -> Option<()> {
+        let start = self.ends.t[0];
+        let mut length = theta * self.ends.length();
+        for _ in 0..ARRIVALS {
+            if self.attempt(field, length).ok()? > 1.0 {
+                return None;
+            }
+            let (value, rate) = gap(start.t + length, &self.ends.end.value).ok()?;
+            let late = -value / rate;
+            if late.abs() <= STRAIGHT * length {
+                let rates = self.stages.as_ref()[M::LAST];
+                self.ends.end = self.ends.end.advanced(|i| late * rates.padded()[i]);
+                self.ends.t[1] = start.after(length + late);
+                self.dense_ready = false;
+                return Some(());
+            }
+            length += late;
+            let is_beside = late.abs() <= BESIDE * length;
+            if !is_beside {
+                return None;
+            }
+        }
+        None
+    }
+
     /// Restores the last accepted state after a failure.
     fn retract(&mut self) {
         self.ends.retract();
@@ -361,6 +408,24 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
 
     fn error(&self) -> f64 {
         self.error
+    }
+
+    fn meet(
+        &mut self,
+        field: &F,
+        theta: f64,
+        gap: &GapAt<'_, F::State>,
+        counters: &mut Counters,
+    ) -> bool {
+        if M::DENSE_ERROR * self.error < 1.0 {
+            return false;
+        }
+        let kept = (self.ends, self.stages, self.dense, self.dense_ready);
+        let arrived = self.arrive(&mut Counted { field, counters }, theta, gap);
+        if arrived.is_none() {
+            (self.ends, self.stages, self.dense, self.dense_ready) = kept;
+        }
+        arrived.is_some()
     }
 
     fn replace_end(

@@ -194,7 +194,7 @@ pub trait Stepper<F: VectorField> {
 
     /// Repeats the last step with a new length, close to `theta` times the present one, such that the gap at the end of
     /// the step is 0. `gap` returns a gap and its rate. True on success; otherwise the step is unchanged. Only methods
-    /// that solve for impacts succeed.
+    /// whose dense output is less accurate than their steps, or that solve for impacts, succeed.
     fn meet(
         &mut self,
         field: &F,

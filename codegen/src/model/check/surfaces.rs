@@ -220,6 +220,9 @@ pub(super) fn have_same_gap(
         && is_proportional(resolver, first.gap, second.gap)
 }
 
+/// Relative difference that is no rounding error.
+const IN_NUMBERS: f64 = 1e-9;
+
 /// Number of points at which proportional gaps are evaluated.
 const POINTS: u32 = 64;
 
@@ -251,11 +254,27 @@ fn generic(symbol: SymbolId, seed: u32) -> f64 {
     sign * scale * size
 }
 
+/// True if the quotients of two functions at two points differ by more than rounding.
+///
+/// NOTE: many surfaces have many pairs, and the exact test of a pair is slow.
+fn differ_in_numbers(pool: &Pool, f: ExprId, g: ExprId) -> bool {
+    let at = |seed: u32| [f, g].map(|id| pool.eval_magnitude(id, &|symbol| generic(symbol, seed)));
+    let mut points = (0..POINTS).map(at).filter(|values| {
+        let numbers = values.iter().flat_map(|(value, size)| [value, size]);
+        numbers.copied().all(f64::is_finite)
+    });
+    let (Some([f, g]), Some([other_f, other_g])) = (points.next(), points.next()) else {
+        return false;
+    };
+    let difference = f.0 * other_g.0 - other_f.0 * g.0;
+    difference.abs() > IN_NUMBERS * (f.1 * other_g.1 + other_f.1 * g.1)
+}
+
 /// True if the quotient of two functions is constant: `f d(g) - g d(f) = 0`.
 fn is_proportional(resolver: &mut Resolver<'_>, f: ExprId, g: ExprId) -> bool {
     let pool = &mut resolver.pool;
     let symbols = pool.symbols(f);
-    if symbols != pool.symbols(g) {
+    if symbols != pool.symbols(g) || differ_in_numbers(pool, f, g) {
         return false;
     }
     symbols.into_iter().all(|symbol| {
