@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Err(refused) => return Err(refused.to_string().into()),
     };
     for loaded in &models {
-        let model = Erased::<32>::of(&loaded.form).ok_or("the model has more than 32 variables")?;
+        let model = Erased::<32>::of(&loaded.form)?;
         let start = model.initial();
         let state = model.state(0.0, &start.q, &start.qdot)?;
         let integrator = Dop853::new(Tolerance::new(1e-12)?);

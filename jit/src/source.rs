@@ -1,5 +1,6 @@
 //! The models of a text, and its mistakes by line and column.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
@@ -103,39 +104,94 @@ impl Refused {
     }
 }
 
+/// Number of times that a message is shown in full.
+const SHOWN: usize = 3;
+
+/// Number of lines that are listed for further places with the same message.
+const LISTED: usize = 20;
+
+/// Largest number of characters of a line that are shown, and the number of them before the mistake.
+const WINDOW: [usize; 2] = [160, 60];
+
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        let mut is_first = true;
         for (index, mistake) in self.mistakes.iter().enumerate() {
-            if index > 0 {
-                write!(f, "\n\n")?;
+            let count = counts.entry(mistake.message.as_str()).or_default();
+            *count += 1;
+            if *count > SHOWN {
+                continue;
             }
-            let Mistake {
-                message,
-                line,
-                column,
-                width,
-                ..
-            } = mistake;
-            let number = line.to_string();
-            let margin = " ".repeat(number.len());
-            let text = self.text.lines().nth(line - 1).unwrap_or_default();
-            let before: String = text
-                .chars()
-                .take(column - 1)
-                .map(|c| if c == '\t' { '\t' } else { ' ' })
-                .collect();
-            let mut lines = message.lines();
-            let head = if index > 0 { "error: " } else { "" };
-            writeln!(f, "{head}{}", lines.next().unwrap_or_default())?;
-            for line in lines {
-                writeln!(f, "       {line}")?;
+            let head = if is_first { "" } else { "\n\nerror: " };
+            is_first = false;
+            write!(f, "{head}")?;
+            self.write(f, mistake)?;
+            if *count == SHOWN {
+                let same = |other: &&Mistake| other.message == mistake.message;
+                let others = self.mistakes[index + 1..].iter().filter(same);
+                write_others(f, &others.collect::<Vec<_>>())?;
             }
-            writeln!(f, "{margin}--> {}:{line}:{column}", self.name)?;
-            writeln!(f, "{margin} |")?;
-            writeln!(f, "{number} | {text}")?;
-            write!(f, "{margin} | {before}{}", "^".repeat(*width))?;
         }
         Ok(())
+    }
+}
+
+/// Writes the lines of further mistakes with the same message.
+fn write_others(f: &mut fmt::Formatter<'_>, mistakes: &[&Mistake]) -> fmt::Result {
+    if mistakes.is_empty() {
+        return Ok(());
+    }
+    let places = match mistakes.len() {
+        1 => "one more place".to_owned(),
+        count => format!("{count} more places"),
+    };
+    let lines = mistakes.iter().take(LISTED);
+    let lines: Vec<String> = lines.map(|it| it.line.to_string()).collect();
+    let more = if mistakes.len() > LISTED { ", .." } else { "" };
+    let noun = if mistakes.len() > 1 { "lines" } else { "line" };
+    write!(
+        f,
+        "\n       the same in {places}: {noun} {}{more}",
+        lines.join(", ")
+    )
+}
+
+impl Refused {
+    /// Writes the message with the line and its place.
+    fn write(&self, f: &mut fmt::Formatter<'_>, mistake: &Mistake) -> fmt::Result {
+        let Mistake {
+            message,
+            line,
+            column,
+            width,
+            ..
+        } = mistake;
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        let text = self.text.lines().nth(line - 1).unwrap_or_default();
+        let [most, lead] = WINDOW;
+        let length = text.chars().count();
+        let first = match length > most {
+            true => (column - 1).saturating_sub(lead),
+            false => 0,
+        };
+        let shown: String = text.chars().skip(first).take(most).collect();
+        let left = if first > 0 { "..." } else { "" };
+        let right = if length > first + most { "..." } else { "" };
+        let before = shown.chars().take(column - 1 - first);
+        let before: String = before.map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+        let width = (*width).min(most - before.chars().count().min(most - 1));
+        let mut lines = message.lines();
+        writeln!(f, "{}", lines.next().unwrap_or_default())?;
+        for line in lines {
+            writeln!(f, "       {line}")?;
+        }
+        writeln!(f, "{margin}--> {}:{line}:{column}", self.name)?;
+        writeln!(f, "{margin} |")?;
+        writeln!(f, "{number} | {left}{shown}{right}")?;
+        let lead = " ".repeat(left.len());
+        write!(f, "{margin} | {lead}{before}{}", "^".repeat(width))
     }
 }
 

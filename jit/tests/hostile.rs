@@ -146,7 +146,7 @@ fn load_broken_texts(count: usize, seed: u64) {
 
 /// Evaluates the declared start of a loaded model. The start may be refused.
 fn begin(form: &dalembert::erased::Form) {
-    let Some(system) = Erased::<32>::of(form) else {
+    let Ok(system) = Erased::<32>::of(form) else {
         return;
     };
     let start = system.initial();

@@ -93,10 +93,7 @@ impl NativeModel {
 
     /// The model of a form, with declared values.
     fn of_form(models: &Arc<[Loaded]>, place: usize, form: &Arc<Form>) -> PyResult<Self> {
-        let model = of_form(Arc::clone(form).into(), Code::Loaded).ok_or_else(|| {
-            let excess = form
-                .excess()
-                .map_or(String::new(), |excess| excess.to_string());
+        let model = of_form(Arc::clone(form).into(), Code::Loaded).map_err(|excess| {
             error::refused(format!(
                 "`{}` has {excess}; compile it in a crate of Rust with `dalembert::model!`",
                 form.documentation.description.name

@@ -24,10 +24,9 @@ pub fn derive<'py>(py: Python<'py>, source: &str, claims: bool) -> PyResult<Boun
         };
         derived.map_err(|error| error.to_string())
     });
-    let mut derived = derived.map_err(refused)?;
-    let scenes = core::mem::take(&mut derived.scenes);
-    let all = core::iter::once(derived).chain(scenes);
-    let all: PyResult<Vec<_>> = all.map(|report| derivation(py, &report)).collect();
+    let derived = derived.map_err(refused)?;
+    let all = core::iter::once(&derived).chain(&derived.scenes);
+    let all: PyResult<Vec<_>> = all.map(|report| derivation(py, report)).collect();
     PyList::new(py, all?)
 }
 

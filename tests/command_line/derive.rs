@@ -93,3 +93,33 @@ fn no_impact_is_said_to_keep_momenta_that_it_changes() {
         done.output
     );
 }
+
+#[test]
+fn the_equations_of_every_mode_are_derived() {
+    let hill = "Hill {
+        coordinates { x; }
+        modes {
+            low { lagrangian = dot(x)^2/2; initial { x = -1; dot(x) = 1; until = 2; } }
+            high { lagrangian = dot(x)^2/2 - x; }
+        }
+        transitions { up: low -> high when x >= 0; down: high -> low when x <= 0; }
+    }";
+    let derived = |options: &[&str]| run_on(hill, &[&["derive", "-"], options].concat());
+    let text = derived(&[]).output;
+    for part in [
+        "Mode low",
+        "Mode high",
+        "Lagrangian",
+        "Work of the emitted functions",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let latex = derived(&["--format", "latex"]).output;
+    assert_eq!(latex.matches("\\section*{Mode ").count(), 2, "{latex}");
+    assert_eq!(latex.matches("\\end{document}").count(), 1);
+    let document = derived(&["--format", "json"]).json();
+    assert_eq!(document["modes"][1]["model"], "high");
+    let one = derived(&["--scene", "high", "--format", "json"]).json();
+    assert_eq!(document["modes"][1], one);
+    assert!(one["modes"].is_null());
+}

@@ -165,17 +165,20 @@ fn files_that_cannot_be_read_are_named() {
 
 #[test]
 fn what_is_too_large_is_said() {
-    let text = "Chain { coordinates { x[40]; } lagrangian = sum(i in 1..=40: dot(x[i])^2/2); initial { until = 1; } }";
-    let refused = run_on(text, &["simulate", "-"]);
+    let walls: String = (1..=130).map(|k| format!("w{k}: x <= {k}; ")).collect();
+    let text = format!(
+        "P {{ coordinates {{ x; }} lagrangian = dot(x)^2/2; impacts {{ {walls} }} initial {{ until = 1; }} }}"
+    );
+    let refused = run_on(&text, &["simulate", "-"]);
     assert_eq!(refused.exit, Exit::Refused);
     assert!(
         refused
             .errors
-            .contains("80 components of a state; without a compiler there is room for 32"),
+            .contains("130 surfaces, and there is room for 128 without a compiler"),
         "{}",
         refused.errors
     );
-    let terms: Vec<String> = (1..=300).map(|k| format!("sin({k}*x)/{k}")).collect();
+    let terms: Vec<String> = (1..=1200).map(|k| format!("sin({k}*x)/{k}")).collect();
     let text = format!(
         "P {{ coordinates {{ x; y; }} lagrangian = dot(x)^2/2 + dot(y)^2/2 - ({}); initial {{ until = 1; }} }}",
         terms.join(" + ")
@@ -373,4 +376,63 @@ fn claims_are_left_alone_where_that_is_asked_for() {
         "{}",
         refused.errors
     );
+}
+
+#[test]
+fn long_chains_run_and_say_what_they_are_too_long_for() {
+    let text = "Chain { const N = 40; coordinates { a[N]: angle; } let X[0] = 0; let X[i in 1..=N] = X[i-1] + sin(a[i]);
+        let Y[0] = 0; let Y[i in 1..=N] = Y[i-1] - cos(a[i]);
+        lagrangian = sum(i in 1..=N: (dot(X[i])^2 + dot(Y[i])^2)/2 - Y[i]); initial { a[1] = 1; until = 1; } }";
+    for options in [
+        &["--verify"][..],
+        &["--integrator", "taylor"],
+        &["--integrator", "gauss4"],
+    ] {
+        let done = run_on(text, &[&["simulate", "-"], options].concat());
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        assert!(done.output.contains("done at t = 1"), "{}", done.output);
+    }
+    let lanes = "ensemble - --members 8 --vary a.1=0.1..1 --integrator taylor";
+    let done = run_on(text, &lanes.split(' ').collect::<Vec<_>>());
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    for line in ["linearise -", "simulate - --certify"] {
+        let refused = run_on(text, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(refused.exit, Exit::Refused, "{line}: {}", refused.output);
+        let reason = "80 components of a state, and there is room for 32 in this computation";
+        assert!(
+            refused.errors.contains(reason),
+            "{line}: {}",
+            refused.errors
+        );
+    }
+}
+
+#[test]
+fn a_mistake_that_repeats_and_a_long_line_stay_readable() {
+    let walls: String = (1..=30)
+        .map(|k| format!("  surface w{k}: x <= {k};\n"))
+        .collect();
+    let text = format!(
+        "P {{\n coordinates {{ x; }}\n lagrangian = dot(x)^2/2;\n initial {{ until = 1; }}\n{walls}}}\n"
+    );
+    let refused = run_on(&text, &["simulate", "-"]);
+    assert_eq!(refused.exit, Exit::Refused);
+    let shown = refused.errors.matches("-->").count();
+    assert_eq!(shown, 3, "{}", refused.errors);
+    let others = "the same in 27 more places: lines 8, 9, 10";
+    assert!(refused.errors.contains(others), "{}", refused.errors);
+
+    let long = vec!["sin(x)"; 400].join(" + ");
+    let text =
+        format!("P {{ coordinates {{ x; }} lagrangian = dot(x)^2/2 - ({long} + zz + {long}); }}");
+    let refused = run_on(&text, &["simulate", "-"]);
+    let lines: Vec<&str> = refused.errors.lines().collect();
+    let marked = lines
+        .iter()
+        .position(|line| line.contains('^'))
+        .expect("a caret");
+    let (line, caret) = (lines[marked - 1], lines[marked]);
+    assert!(line.len() < 200, "{line}");
+    let place = caret.find('^').expect("a caret");
+    assert_eq!(&line[place..place + 2], "zz", "{line}\n{caret}");
 }

@@ -40,7 +40,11 @@ fn a_form_needs_room_for_its_vectors() {
     let chain = compared().iter().find(is_chain);
     let (_, form) = chain.expect("a model").emitted[0];
     assert_eq!(form.capacity(), Some(8));
-    assert_eq!(Erased::<4>::of(form), None);
+    let refused = Erased::<4>::of(form).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "8 components of a state, and there is room for 4"
+    );
     let chain = Erased::<16>::of(form).expect("room");
     assert_eq!(chain.description().name, "chain4");
     let zeros: Bounded<f64, 16> = chain.zero_vector();

@@ -41,6 +41,7 @@ pub fn control(source: &str, part: Option<&str>) -> Result<Report, ReportError> 
         findings: Vec::new(),
         certificate: Tree::Absent,
         scenes: Vec::new(),
+        has_modes: false,
     })
 }
 

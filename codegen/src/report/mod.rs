@@ -65,6 +65,18 @@ pub struct Report {
     pub certificate: Tree,
     /// Reports of the scenes or modes, in order.
     pub scenes: Vec<Report>,
+    /// True if `scenes` are modes, which are then parts of the report as text and as a document.
+    pub has_modes: bool,
+}
+
+impl Report {
+    /// The reports of the modes; none for a model without modes.
+    pub fn modes(&self) -> &[Self] {
+        match self.has_modes {
+            true => &self.scenes,
+            false => &[],
+        }
+    }
 }
 
 /// A part of a report.
@@ -219,6 +231,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
         findings: Vec::new(),
         certificate: Tree::Absent,
         scenes: scenes.collect(),
+        has_modes: true,
     })
 }
 
@@ -299,6 +312,7 @@ fn report_of(compiled: Compiled, name: String) -> Report {
         findings,
         certificate,
         scenes: Vec::new(),
+        has_modes: false,
     }
 }
 

@@ -32,6 +32,9 @@ fn text(report: &Report) -> String {
             };
         }
     }
+    for mode in report.modes() {
+        out += &format!("\nMode {}", text(mode));
+    }
     out
 }
 
@@ -61,11 +64,15 @@ fn text_matrix(left: &str, rows: &[Vec<[String; 2]>]) -> String {
 }
 
 fn latex(report: &Report) -> String {
-    let mut out = String::from(
-        "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage{amsmath}\n\\begin{document}\n",
-    );
-    out += &format!(
-        "\\section*{{{}}}\n{}\n",
+    format!(
+        "\\documentclass{{article}}\n\\usepackage[T1]{{fontenc}}\n\\usepackage{{amsmath}}\n\\begin{{document}}\n{}\\end{{document}}\n",
+        latex_section("", report)
+    )
+}
+
+fn latex_section(kind: &str, report: &Report) -> String {
+    let mut out = format!(
+        "\\section*{{{kind}{}}}\n{}\n",
         escape(&report.name),
         escape(&report.documentation)
     );
@@ -98,7 +105,10 @@ fn latex(report: &Report) -> String {
             };
         }
     }
-    out + "\\end{document}\n"
+    for mode in report.modes() {
+        out += &format!("\n{}", latex_section("Mode ", mode));
+    }
+    out
 }
 
 /// Words with the special characters of LaTeX escaped.

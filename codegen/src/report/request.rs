@@ -133,6 +133,7 @@ impl Asked {
             findings: Vec::new(),
             certificate: Tree::Absent,
             scenes: Vec::new(),
+            has_modes: false,
         }
     }
 }

@@ -47,7 +47,9 @@ pub enum CliError {
     #[error("{0}")]
     Declaration(dalembert_jit::Refused),
     /// A model that is too large to run without a compiler.
-    #[error("MODEL: `{model}` has {excess}; compile it in a crate with `dalembert::model!`")]
+    #[error(
+        "MODEL: `{model}` has {excess} without a compiler; compile it in a crate with `dalembert::model!`"
+    )]
     Large {
         /// The model.
         model: &'static str,
@@ -209,7 +211,14 @@ impl CliError {
 
     /// The error for a run that does not start.
     pub fn refused(model: &dyn AnyModel, refusal: &Refusal) -> Self {
-        Self::Start(refusal_text(model.description(), refusal))
+        let reason = refusal_text(model.description(), refusal);
+        match refusal {
+            Refusal::Large(_) => Self::Input {
+                place: "MODEL".to_owned(),
+                reason,
+            },
+            _ => Self::Start(reason),
+        }
     }
 }
 

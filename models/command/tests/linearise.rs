@@ -472,3 +472,66 @@ fn the_stability_of_a_fold_is_open() {
     let upper = stability("--set T=0.9 --initial th=2");
     assert!(upper.contains("unstable"), "{upper}");
 }
+
+#[test]
+fn a_kink_at_an_equilibrium_leaves_its_stability_open() {
+    // On one side of x = 0 the motion is that of a saddle, and of a damped oscillator on the other.
+    let half = "M { coordinates { x; } lagrangian = dot(x)^2/2; forces { f: -abs(x)*d(x) - dot(x)*d(x); } initial { until = 1; } }";
+    let first = "M { coordinates { x; } field { dot(x) = -abs(x); } initial { until = 1; } }";
+    let root = "M { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - (x + y) - x^2 - y^2; \
+        forces { f: (1 + abs(x - y + 0))*d(x) + d(y) - dot(x)*d(x) - dot(y)*d(y); } initial { until = 1; } }";
+    // Close to 0, rounding hides the kink.
+    let pendulum = "M { coordinates { th: angle; } lagrangian = dot(th)^2/2 - 9.81*(1 - cos(th)); \
+        forces { f: -dot(th)*d(th); p: 20*sqrt(2 - 2*cos(th))*d(th); } initial { until = 1; } }";
+    for (model, across) in [
+        (half, "`x`"),
+        (first, "`x`"),
+        (root, "`x` and of `y`"),
+        (pendulum, "`th`"),
+    ] {
+        let found = run_on(model, "linearise -");
+        assert_eq!(found.exit, Exit::Reached, "{}", found.errors);
+        let expected = format!("at this value of {across}, derivatives of the rates jump");
+        assert!(found.output.contains(&expected), "{}", found.output);
+    }
+    // Slopes that vary over short distances are no kink.
+    let steep = "M { coordinates { x; } lagrangian = dot(x)^2/2 - x^2 - 1000*x^4 - 1e5*x^3; \
+        forces { f: -dot(x)*d(x); } initial { until = 1; } }";
+    let atoms = "M { coordinates { x; } parameters { m > 0 = 6.6e-26; s > 0 = 3.4e-10; e > 0 = 1.65e-21; c = 1e-13; } \
+        lagrangian = m*dot(x)^2/2 - 4*e*((s/x)^12 - (s/x)^6); forces { drag: -c*dot(x)*d(x); } \
+        initial { x = 3.8163709642252e-10; until = 1; } }";
+    let narrow = "M { coordinates { x; } field { dot(x) = -x + 3*(sqrt(1e-16 + x^2) - 1e-8); } initial { until = 1; } }";
+    // A frequency of 1e6 and a damping of 1e-3.
+    let stiff = "M { coordinates { x; v; } field { dot(x) = v; dot(v) = -1e12*x - 1e-3*v; } initial { until = 1; } }";
+    for smooth in [steep, atoms, narrow, stiff] {
+        let found = run_on(smooth, "linearise -");
+        assert!(
+            found.output.contains("stable: all real parts are negative"),
+            "{}",
+            found.output
+        );
+    }
+}
+
+#[test]
+fn eigenvalues_that_rounding_moves_across_the_axis_leave_the_stability_open() {
+    // All eigenvalues are -1, and those that are found are not: A + 1 is nilpotent.
+    let nilpotent = "M { coordinates { x; y; z; } parameters { k = 1e5; } field { dot(x) = -x + k*(x + y + 3*z); \
+        dot(y) = -y + k*(5*x + 2*y + 6*z); dot(z) = -z + k*(-2*x - y - 3*z); } initial { until = 1; } }";
+    for k in ["1e5", "3e5", "7e5", "3e6"] {
+        let found = run_on(nilpotent, &format!("linearise - --set k={k}"));
+        assert!(
+            found
+                .output
+                .contains("3 eigenvalues with real part 0 up to rounding"),
+            "{}",
+            found.output
+        );
+    }
+    let found = run_on(nilpotent, "linearise - --set k=1");
+    assert!(
+        found.output.contains("stable: all real parts"),
+        "{}",
+        found.output
+    );
+}

@@ -15,7 +15,7 @@ use dalembert::{Instance, StateError, TaylorField, Variational, VectorField};
 
 use crate::integrator::Form;
 use crate::model::{OffConstraint, Origin, Rates};
-use crate::owner::Largest;
+use crate::owner::Common;
 use crate::refusal::{Refusal, Uncertified};
 
 /// Stack size in bytes: four times the need of the longest vectors in unoptimised code.
@@ -118,7 +118,7 @@ impl Subject<'_> {
         observer: &mut dyn FnMut(&Strike),
     ) -> Result<Certified, Refusal> {
         let form = self.form.ok_or(Uncertified::Compiled)?;
-        let mut system = Largest::of(form).ok_or(Uncertified::Compiled)?;
+        let mut system = Common::of(form)?;
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
@@ -139,7 +139,7 @@ impl Subject<'_> {
         }
         let values = TaylorField::parameters(&system);
         let mut parameters =
-            <Largest<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
+            <Common<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
         let entries = parameters.as_mut_slice().iter_mut();
         for (entry, value) in entries.zip(values.as_slice()) {
             *entry = Interval::of(*value);
@@ -183,11 +183,11 @@ impl Subject<'_> {
     /// Ranges of the components of the initial states.
     fn start(
         &self,
-        system: &Largest<'_>,
-        parameters: &<Largest<'_> as TaylorField>::Parameters<Interval>,
+        system: &Common<'_>,
+        parameters: &<Common<'_> as TaylorField>::Parameters<Interval>,
         request: &Certification,
     ) -> Result<Vec<Interval>, Refusal> {
-        type Positions = <Largest<'static> as Variational>::Configuration<Interval>;
+        type Positions = <Common<'static> as Variational>::Configuration<Interval>;
         let n = self.origin.q.len();
         let tables = &system.form().tables;
         if !tables.modes.is_empty() {
@@ -239,12 +239,12 @@ fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
 
 /// A system with ranges for its parameters.
 struct Shown<'a> {
-    system: &'a Largest<'a>,
-    parameters: <Largest<'a> as TaylorField>::Parameters<Interval>,
+    system: &'a Common<'a>,
+    parameters: <Common<'a> as TaylorField>::Parameters<Interval>,
 }
 
 impl Shown<'_> {
-    fn strike(&self, impact: &CertifiedImpact<Largest<'_>>) -> Strike {
+    fn strike(&self, impact: &CertifiedImpact<Common<'_>>) -> Strike {
         Strike {
             surface: impact.surface,
             time: impact.time,
@@ -256,7 +256,7 @@ impl Shown<'_> {
     /// Positions and velocities of all states of a box.
     fn ranges(&self, times: Interval, component: impl Fn(usize) -> Interval) -> Ranges {
         let mut state =
-            <Largest<'_> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
+            <Common<'_> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = component(i);
         }

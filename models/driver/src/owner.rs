@@ -2,14 +2,16 @@
 
 use dalembert::TaylorField;
 use dalembert::describe::{Description, Instance};
-use dalembert::erased::{self, Erased, Shared};
+use dalembert::erased::{self, Erased, Excess, Shared};
 use dalembert::kernels::Declared;
 use dalembert::numbers::Row;
 
+use crate::refusal::Refusal;
 use crate::typed::Model;
 
-/// A system with room for every form that runs. What needs no speed runs on it alone, and is compiled once for all models.
-pub(crate) type Largest<'f> = Erased<'f, 32>;
+/// The system of computations that need no speed, such as those with variations. They are compiled for it alone. A model of
+/// long vectors has none.
+pub(crate) type Common<'f> = Erased<'f, 32>;
 
 /// Owner of a model with values for its parameters.
 pub(crate) trait Owner {
@@ -25,7 +27,9 @@ pub(crate) trait Owner {
     where
         Self: 'a;
 
-    fn varied(&self) -> Self::Varied<'_>;
+    /// # Errors
+    /// [`Refusal::Large`] if the model has too many components for them.
+    fn varied(&self) -> Result<Self::Varied<'_>, Refusal>;
 
     /// The form, if the model has one.
     fn form(&self) -> Option<&erased::Form>;
@@ -54,8 +58,8 @@ impl<M: Model + 'static> Owner for OfType<M> {
 
     type Varied<'a> = M;
 
-    fn varied(&self) -> M {
-        self.0.clone()
+    fn varied(&self) -> Result<M, Refusal> {
+        Ok(self.0.clone())
     }
 
     fn form(&self) -> Option<&erased::Form> {
@@ -93,20 +97,23 @@ pub(crate) struct OfForm<const C: usize> {
 }
 
 impl<const C: usize> OfForm<C> {
-    /// The system of another capacity, at least `C`.
-    fn with_capacity<const D: usize>(&self) -> Erased<'_, D> {
-        let mut system = Erased::of(&self.form).expect("vectors of at most `C` components");
+    /// The system of another capacity.
+    fn with_capacity<const D: usize>(&self) -> Result<Erased<'_, D>, Excess> {
+        let mut system = Erased::of(&self.form)?;
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
         system.set_mode(self.mode);
-        system
+        Ok(system)
     }
 
-    /// The model with its declared parameter values; `None` if the form has longer vectors.
-    pub fn of(form: &Shared<erased::Form>) -> Option<Self> {
+    /// The model with its declared parameter values.
+    ///
+    /// # Errors
+    /// [`Excess`] if the form has longer vectors.
+    pub fn of(form: &Shared<erased::Form>) -> Result<Self, Excess> {
         let values = TaylorField::parameters(&Erased::<C>::of(form)?);
-        Some(Self {
+        Ok(Self {
             form: form.clone(),
             values: Row::as_slice(&values).to_vec(),
             mode: 0,
@@ -118,13 +125,14 @@ impl<const C: usize> Owner for OfForm<C> {
     type System<'a> = Erased<'a, C>;
 
     fn system(&self) -> Erased<'_, C> {
-        self.with_capacity()
+        let system = self.with_capacity();
+        system.expect("vectors of at most `C` components, as in `of`")
     }
 
-    type Varied<'a> = Largest<'a>;
+    type Varied<'a> = Common<'a>;
 
-    fn varied(&self) -> Largest<'_> {
-        self.with_capacity()
+    fn varied(&self) -> Result<Common<'_>, Refusal> {
+        Ok(self.with_capacity()?)
     }
 
     fn form(&self) -> Option<&erased::Form> {

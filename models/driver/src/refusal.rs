@@ -1,5 +1,6 @@
 //! Reasons why a run does not start.
 
+use dalembert::erased::Excess;
 use dalembert::integrate::ToleranceError;
 use dalembert::{MaxStepError, StartError, StateError};
 use thiserror::Error;
@@ -42,6 +43,9 @@ pub enum Refusal {
     /// The runtime refuses the start.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// The model is too large for the computation, which is compiled for shorter vectors.
+    #[error("the model has {0} in this computation")]
+    Large(#[from] Excess),
     /// No motion of the model can be certified.
     #[error(transparent)]
     Uncertified(#[from] Uncertified),

@@ -2,7 +2,7 @@
 
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
-use dalembert::erased::{self, Shared};
+use dalembert::erased::{self, Excess, Shared};
 use dalembert::law::{Contact, Law};
 use dalembert::numbers::Row;
 use dalembert::state::StateVector;
@@ -62,17 +62,20 @@ pub fn of_system<M: Model + 'static>(system: M) -> Box<dyn AnyModel> {
 }
 
 /// The model of a form, with its declared parameter values, run by an erased system of the least sufficient capacity
-/// ([`erased::Form::capacity`]). `None` if the form exceeds every capacity. A shared form is freed with its last owner.
+/// ([`erased::Form::capacity`]). A shared form is freed with its last owner.
+///
+/// # Errors
+/// [`Excess`] if the form exceeds every capacity.
 // NOTE: not generic, so that the code that runs forms is compiled once, in this crate.
-pub fn of_form(form: Shared<erased::Form>, code: Code) -> Option<Box<dyn AnyModel>> {
+pub fn of_form(form: Shared<erased::Form>, code: Code) -> Result<Box<dyn AnyModel>, Excess> {
     fn with_room<const C: usize>(
         form: &Shared<erased::Form>,
         code: Code,
-    ) -> Option<Box<dyn AnyModel>> {
+    ) -> Result<Box<dyn AnyModel>, Excess> {
         let owner = OfForm::<C>::of(form)?;
-        Some(Box::new(Typed { owner, code }))
+        Ok(Box::new(Typed { owner, code }))
     }
-    with_room::<8>(&form, code).or_else(|| with_room::<32>(&form, code))
+    with_room::<8>(&form, code).or_else(|_| with_room::<128>(&form, code))
 }
 
 /// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and need not
@@ -208,7 +211,7 @@ impl<O: Owner> AnyModel for Typed<O> {
 
     fn mode_alone(&self) -> Option<Box<dyn AnyModel>> {
         let (_, form) = self.owner.mode()?;
-        let mut alone = of_form(form, self.code)?;
+        let mut alone = of_form(form, self.code).ok()?;
         let values = TaylorField::parameters(&self.owner.system());
         for (index, value) in Row::as_slice(&values).iter().enumerate() {
             alone.set_parameter(index, *value);
@@ -434,7 +437,7 @@ impl<O: Owner> Runs for Typed<O> {
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Connected, Unjoined>>, Refusal> {
         let joiner = Joiner { boundary, tell };
-        self.owner.varied().visit_variational(joiner).transpose()
+        self.owner.varied()?.visit_variational(joiner).transpose()
     }
 
     fn linearise(
@@ -442,7 +445,7 @@ impl<O: Owner> Runs for Typed<O> {
         origin: &Origin,
         place: &Place,
     ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal> {
-        let model = self.owner.varied();
+        let model = self.owner.varied()?;
         let state = prepare(&model, &model, place.t, origin)?;
         let q = model.position(&state);
         let qdot = model.velocity(place.t, &state).map_err(StateError::from)?;
@@ -458,7 +461,7 @@ impl<O: Owner> Runs for Typed<O> {
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal> {
         let controller = Controller { task, tell };
         self.owner
-            .varied()
+            .varied()?
             .visit_variational(controller)
             .transpose()
     }
@@ -469,7 +472,7 @@ impl<O: Owner> Runs for Typed<O> {
         from: &[[f64; 2]],
     ) -> Result<Option<Vec<Result<Landing, Unlanded>>>, Refusal> {
         let walker = Walker { leg, from };
-        self.owner.system().visit_variational(walker).transpose()
+        self.owner.varied()?.visit_variational(walker).transpose()
     }
 
     fn certify(
@@ -499,7 +502,7 @@ impl<O: Owner> Typed<O> {
         search: &Search,
         work: W,
     ) -> Result<Option<Result<W::Output, OrbitError>>, Refusal> {
-        let model = self.owner.varied();
+        let model = self.owner.varied()?;
         let (q, qdot) = located(&model, origin)?;
         let visit = Visit {
             search,

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use dalembert::contract::{TaylorField, Variational};
 use dalembert::describe::{Description, VariationalVisitor};
-use dalembert::erased::{self, Erased};
+use dalembert::erased::{self, Excess};
 use dalembert::integrate::{Chosen, Dop853, DormandPrince5, Stepper, Taylor, Tolerance};
 use dalembert::numbers::{Numbers, Row};
 use dalembert::simulation::STEP_BUDGET;
@@ -20,12 +20,10 @@ use thiserror::Error;
 use crate::integrator::{Form, Integrator};
 use crate::model::Origin;
 use crate::names::{self, Unknown};
+use crate::owner::Common;
 use crate::refusal::Refusal;
 use crate::run::{Settings, effects};
 use crate::typed::prepare;
-
-/// The system whose runs are differentiated.
-type System<'f> = Erased<'f, 32>;
 
 /// A variable of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,11 +53,9 @@ pub struct Derivatives {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
-    /// The form exceeds the largest capacity.
-    #[error(
-        "derivatives need a model with vectors of at most 32 components and at most 64 parameters"
-    )]
-    TooLarge,
+    /// The form exceeds the capacity for derivatives.
+    #[error("derivatives: the model has {0} in this computation")]
+    Large(Excess),
     /// The scene was declared without `variations`.
     #[error("the scene was declared without `variations`; add it to what the scene uses")]
     WithoutVariations,
@@ -164,8 +160,9 @@ pub fn differentiate(
     if let Some(error) = VariationError::beforehand(description, settings) {
         return Ok(Err(error));
     }
-    let Some(mut model) = System::of(form) else {
-        return Ok(Err(VariationError::TooLarge));
+    let mut model = match Common::of(form) {
+        Ok(model) => model,
+        Err(excess) => return Ok(Err(VariationError::Large(excess))),
     };
     for (index, value) in values.iter().enumerate() {
         model.set_parameter(index, *value);

@@ -152,24 +152,52 @@ pub struct Wide<L, const C: usize, const K: usize> {
     values: [[L; C]; K],
 }
 
+impl<L: Copy, const C: usize, const K: usize> Wide<L, C, K> {
+    /// A list of `count` equal numbers; numbers beyond the capacity are dropped.
+    #[inline(always)]
+    pub fn all(count: usize, value: L) -> Self {
+        Self {
+            count: count.min(C * K),
+            values: [[value; C]; K],
+        }
+    }
+}
+
+impl<L, const C: usize, const K: usize> AsRef<[L]> for Wide<L, C, K> {
+    #[inline(always)]
+    fn as_ref(&self) -> &[L] {
+        &self.values.as_flattened()[..self.count]
+    }
+}
+
+impl<L, const C: usize, const K: usize> AsMut<[L]> for Wide<L, C, K> {
+    #[inline(always)]
+    fn as_mut(&mut self) -> &mut [L] {
+        &mut self.values.as_flattened_mut()[..self.count]
+    }
+}
+
+impl<L: PartialEq, const C: usize, const K: usize> PartialEq for Wide<L, C, K> {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_ref() == other.as_ref()
+    }
+}
+
 impl<L: Numbers, const C: usize, const K: usize> Row<L> for Wide<L, C, K> {
     const CAPACITY: usize = C * K;
 
     #[inline(always)]
     fn zeros(count: usize) -> Self {
-        Self {
-            count: count.min(C * K),
-            values: [[L::ZERO; C]; K],
-        }
+        Self::all(count, L::ZERO)
     }
 
     #[inline(always)]
     fn as_slice(&self) -> &[L] {
-        &self.values.as_flattened()[..self.count]
+        self.as_ref()
     }
 
     #[inline(always)]
     fn as_mut_slice(&mut self) -> &mut [L] {
-        &mut self.values.as_flattened_mut()[..self.count]
+        self.as_mut()
     }
 }

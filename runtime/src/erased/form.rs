@@ -11,12 +11,9 @@ use crate::kernels::{Documentation, KernelTable, Tables};
 use crate::numbers::Numbers;
 
 /// Capacities for which erased systems are compiled.
-pub const CAPACITIES: [usize; 2] = [8, 32];
+pub const CAPACITIES: [usize; 2] = [8, 128];
 
-/// Maximum number of parameters of an erased system, inputs included.
-pub const PARAMETERS: usize = 64;
-
-/// Storage for parameters over other kinds of number, as a multiple of the capacity.
+/// Storage for parameters, inputs included, as a multiple of the capacity.
 pub(super) const ARGUMENTS: usize = 2;
 
 /// Storage for the values of kernels that give several quantities at once, as a multiple of the capacity.
@@ -28,8 +25,11 @@ pub(super) const FIRSTS: usize = 18;
 /// Maximum number of initial values of a series of an erased system.
 pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 
-/// The square of this number is the number of entries of the storage for the geometric quantities at a state.
-pub(super) const GEOMETRY: usize = 64;
+/// Numbers of columns and rows of the storage for all geometric quantities at a state.
+pub(super) const GEOMETRY: [usize; 2] = [64, 256];
+
+/// Maximum number of entries of all geometric quantities at a state.
+const ENTRIES: usize = GEOMETRY[0] * GEOMETRY[1];
 
 /// Tables over other numbers than `f64`, each with its own type.
 pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 7];
@@ -90,13 +90,18 @@ pub struct Excess {
     pub most: usize,
 }
 
+impl Excess {
+    const fn of(what: &'static str, count: usize, most: usize) -> Self {
+        Self { what, count, most }
+    }
+}
+
+impl core::error::Error for Excess {}
+
 impl fmt::Display for Excess {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, count, most } = self;
-        write!(
-            f,
-            "{count} {what}; without a compiler there is room for {most}"
-        )
+        write!(f, "{count} {what}, and there is room for {most}")
     }
 }
 
@@ -122,36 +127,61 @@ impl Form {
         None
     }
 
-    /// The first number that is too large for the largest of [`CAPACITIES`]; `None` if the form fits.
-    pub fn excess(&self) -> Option<Excess> {
-        let most = CAPACITIES[CAPACITIES.len() - 1];
-        let dimensions = &self.tables.value().dimensions;
-        let components = dimensions.state.max(2 * dimensions.coordinates);
-        let parameters = PARAMETERS.min(ARGUMENTS * most);
-        let counts = [
-            ("components of a state", components, most),
-            ("surfaces", dimensions.surfaces, most),
-            ("parameters and inputs", dimensions.parameters, parameters),
-            ("derived quantities", self.room, ROWS * most),
-            ("kept power series", self.firsts, FIRSTS * most),
-        ];
-        let mut counts = counts.into_iter();
-        counts
-            .find(|&(_, count, most)| count > most)
-            .map(|(what, count, most)| Excess { what, count, most })
-    }
-
     /// True if a system of this capacity has room for the vectors, parameters, kernels and series of the form, and for the
     /// states of the global form.
     pub const fn fits(&self, capacity: usize) -> bool {
+        self.excess_over(capacity).is_none()
+    }
+
+    /// The first number that is too large for the largest of [`CAPACITIES`]; `None` if the form fits.
+    pub const fn excess(&self) -> Option<Excess> {
+        self.excess_over(CAPACITIES[CAPACITIES.len() - 1])
+    }
+
+    /// The first number that is too large for a system of this capacity; `None` if the form [fits](Form::fits).
+    pub const fn excess_over(&self, capacity: usize) -> Option<Excess> {
         let dimensions = &self.tables.value().dimensions;
-        dimensions.state <= capacity
-            && 2 * dimensions.coordinates <= capacity
-            && dimensions.surfaces <= capacity
-            && dimensions.parameters <= ARGUMENTS * capacity
-            && dimensions.parameters <= PARAMETERS
-            && self.room <= ROWS * capacity
-            && self.firsts <= FIRSTS * capacity
+        let counts = [
+            Excess::of("components of a state", dimensions.state, capacity),
+            Excess::of(
+                "positions and velocities",
+                2 * dimensions.coordinates,
+                capacity,
+            ),
+            Excess::of("surfaces", dimensions.surfaces, capacity),
+            Excess::of(
+                "parameters and inputs",
+                dimensions.parameters,
+                ARGUMENTS * capacity,
+            ),
+            Excess::of("derived quantities", self.room, ROWS * capacity),
+            Excess::of("kept power series", self.firsts, FIRSTS * capacity),
+            Excess::of(
+                "entries of all quantities at a state",
+                self.entries(),
+                ENTRIES,
+            ),
+        ];
+        let mut k = 0;
+        while k < counts.len() {
+            if counts[k].count > counts[k].most {
+                return Some(counts[k]);
+            }
+            k += 1;
+        }
+        None
+    }
+
+    /// Number of entries of all geometric quantities at a state.
+    const fn entries(&self) -> usize {
+        let quantities = self.documentation.value().geometry.value();
+        let mut count = 0;
+        let mut k = 0;
+        while k < quantities.len() {
+            count += quantities[k].shape.count();
+            k += 1;
+        }
+        count
     }
 
     /// The global form; the form itself if it is global.

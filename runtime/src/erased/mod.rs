@@ -23,6 +23,6 @@ mod system;
 
 pub use bounded::{Bounded, Wide};
 pub use dalembert_numbers::{Held, Shared};
-pub use form::{CAPACITIES, Defaults, Excess, Form, Global, Kinds, MOST_FIRSTS, PARAMETERS};
+pub use form::{CAPACITIES, Defaults, Excess, Form, Global, Kinds, MOST_FIRSTS};
 pub use series::{Advance, Begin, Expanded, SeriesTable};
 pub use system::Erased;

@@ -3,7 +3,7 @@
 use dalembert_numbers::Held;
 
 use super::bounded::{Bounded, Wide};
-use super::form::{FIRSTS, Form, PARAMETERS};
+use super::form::{ARGUMENTS, FIRSTS, Form};
 use super::system::Erased;
 use crate::contract::{TaylorField, VectorField};
 use crate::error::Fault;
@@ -90,7 +90,7 @@ fn advance<L: Numbers, const C: usize>(
 }
 
 impl<const C: usize> TaylorField for Erased<'_, C> {
-    type Parameters<L: Numbers> = Bounded<L, PARAMETERS>;
+    type Parameters<L: Numbers> = Wide<L, C, ARGUMENTS>;
     type Row<L: Numbers> = Bounded<L, C>;
     type Gaps<L: Numbers> = Bounded<L, C>;
     type Firsts<L: Numbers> = Wide<L, C, FIRSTS>;
@@ -114,13 +114,13 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
         self.form().firsts
     }
 
-    fn parameters(&self) -> Bounded<f64, PARAMETERS> {
+    fn parameters(&self) -> Wide<f64, C, ARGUMENTS> {
         *self.values()
     }
 
     fn begin<L: Numbers>(
         &self,
-        parameters: &Bounded<L, PARAMETERS>,
+        parameters: &Wide<L, C, ARGUMENTS>,
         t: L,
         state: &Bounded<L, C>,
         firsts: &mut Wide<L, C, FIRSTS>,
@@ -132,7 +132,7 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
         }
         for (mode, form) in self.forms() {
             let known = form.firsts;
-            series::begin::<L, Bounded<L, PARAMETERS>, Bounded<L, C>, Wide<L, C, FIRSTS>>(
+            series::begin::<L, Wide<L, C, ARGUMENTS>, Bounded<L, C>, Wide<L, C, FIRSTS>>(
                 (mode, known),
                 self.lengths(),
                 (parameters, t, state),
@@ -148,7 +148,7 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
 
     fn advance<L: Numbers>(
         &self,
-        parameters: &Bounded<L, PARAMETERS>,
+        parameters: &Wide<L, C, ARGUMENTS>,
         unit: L,
         order: usize,
         firsts: &Wide<L, C, FIRSTS>,
@@ -170,7 +170,7 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
         };
         for (mode, form) in self.forms() {
             let known = form.firsts;
-            series::advance::<L, Bounded<L, PARAMETERS>, Wide<L, C, FIRSTS>, _, _, _, _>(
+            series::advance::<L, Wide<L, C, ARGUMENTS>, Wide<L, C, FIRSTS>, _, _, _, _>(
                 (mode, known),
                 expansion,
                 (coefficients, gaps),

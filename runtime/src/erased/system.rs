@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::bounded::{Bounded, Wide};
-use super::form::{ARGUMENTS, Form, GEOMETRY, PARAMETERS, ROWS};
+use super::form::{ARGUMENTS, Excess, Form, GEOMETRY, ROWS};
 use crate::contract::{RankDrop, System, Tangent};
 use crate::describe::{Instance, Report, VariationalVisitor};
 use crate::error::{Fault, StateError};
@@ -22,21 +22,23 @@ use crate::state::StateVector;
 #[derive(Clone, Copy)]
 pub struct Erased<'f, const C: usize> {
     form: &'f Form,
-    values: Bounded<f64, PARAMETERS>,
+    values: Wide<f64, C, ARGUMENTS>,
     /// The mode in which states are made.
     mode: usize,
 }
 
 impl<'f, const C: usize> Erased<'f, C> {
-    /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` if the form does
-    /// not [fit](Form::fits) into the capacity `C`.
-    pub fn of(form: &'f Form) -> Option<Self> {
-        if !form.fits(C) {
-            return None;
+    /// The model with its declared defaults; a parameter without default is NaN until it is set.
+    ///
+    /// # Errors
+    /// [`Excess`] if the form does not [fit](Form::fits) into the capacity `C`.
+    pub fn of(form: &'f Form) -> Result<Self, Excess> {
+        if let Some(excess) = form.excess_over(C) {
+            return Err(excess);
         }
-        let mut values = Bounded::all(form.tables.dimensions.parameters, 0.0);
+        let mut values = Wide::all(form.tables.dimensions.parameters, 0.0);
         (form.defaults)(values.as_mut());
-        Some(Self {
+        Ok(Self {
             form,
             values,
             mode: 0,
@@ -51,7 +53,7 @@ impl<'f, const C: usize> Erased<'f, C> {
 
     /// The values of the parameters.
     #[inline(always)]
-    pub(super) fn values(&self) -> &Bounded<f64, PARAMETERS> {
+    pub(super) fn values(&self) -> &Wide<f64, C, ARGUMENTS> {
         &self.values
     }
 
@@ -222,7 +224,7 @@ impl<'f, const C: usize> Declared for Erased<'f, C> {
 
 /// Inputs come after the described parameters.
 impl<const C: usize> Actuated for Erased<'_, C> {
-    type Inputs = Bounded<f64, PARAMETERS>;
+    type Inputs = Wide<f64, C, ARGUMENTS>;
 
     fn set_inputs(&mut self, inputs: &Self::Inputs) {
         let first = self.form.documentation.description.parameters.len();
@@ -256,7 +258,7 @@ impl<const C: usize> HasVariations for Erased<'_, C> {
 }
 
 impl<const C: usize> Documented for Erased<'_, C> {
-    type Geometry = Wide<f64, GEOMETRY, GEOMETRY>;
+    type Geometry = Wide<f64, { GEOMETRY[0] }, { GEOMETRY[1] }>;
     type Global = Self;
 
     fn documentation(&self) -> &Documentation {

@@ -97,7 +97,11 @@ fn json(report: &Report) -> Value {
         .iter()
         .map(|section| json!({ "title": section.title, "equation": both(&section.equation.map(String::from)), "items": section.items.iter().map(item_json).collect::<Vec<_>>() }))
         .collect();
-    json!({ "model": report.name, "documentation": report.documentation, "sections": sections })
+    let mut document = json!({ "model": report.name, "documentation": report.documentation, "sections": sections });
+    if report.has_modes {
+        document["modes"] = report.modes().iter().map(json).collect();
+    }
+    document
 }
 
 fn both(pair: &[String; 2]) -> Value {

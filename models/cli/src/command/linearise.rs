@@ -5,7 +5,7 @@ mod summary;
 
 use dalembert::describe::Description;
 use dalembert_driver::{
-    AnyModel, Linearisation, Place, Sampling, Trim, Unlinear, components, outcome, words,
+    AnyModel, Linearisation, Place, Refusal, Sampling, Trim, Unlinear, components, outcome, words,
 };
 
 use crate::args::LineariseArgs;
@@ -53,9 +53,12 @@ pub fn run(
     let description = model.description();
     let result = model
         .linearise(&origin, &place)
-        .map_err(|refusal| CliError::Input {
-            place: "--initial".to_owned(),
-            reason: error::refusal_text(description, &refusal),
+        .map_err(|refusal| match refusal {
+            Refusal::Large(_) => CliError::refused(model, &refusal),
+            _ => CliError::Input {
+                place: "--initial".to_owned(),
+                reason: error::refusal_text(description, &refusal),
+            },
         })?;
     let found = match result {
         Some(Err(reason @ (Unlinear::Modes | Unlinear::Unreduced))) => {

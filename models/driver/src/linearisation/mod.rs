@@ -39,8 +39,29 @@ const AT_REST: f64 = 1e-9;
 /// root, one Newton step covers half of the distance to the root.
 const BEYOND: f64 = 4.0;
 
-/// Largest real part that counts as 0, as a fraction of the largest entry of A.
-const NEUTRAL: f64 = 1e-9;
+/// Distances of the states between which a jump of the derivatives is looked for: these powers of [`DECADE`], as fractions of
+/// the component, or of 1.
+const DECADES: u32 = 13;
+const DECADE: f64 = 0.1;
+
+/// Smallest jump, as a fraction of the largest derivative.
+const JUMP: f64 = 1e-6;
+
+/// Ratio of the jumps of a smooth function at distances with the ratio [`DECADE`].
+const FALL: core::ops::Range<f64> = 1e-4..0.3;
+
+/// Errors by which entries of A and eigenvalues may be wrong: relative to the entry, and to the largest entry.
+const OF_ENTRY: f64 = 64.0 * f64::EPSILON;
+const OF_LARGEST: f64 = 2.0 * f64::EPSILON;
+
+/// Largest real part that counts as 0, as a multiple of the change of the eigenvalue under such errors.
+const NEUTRAL: f64 = 8.0;
+
+/// Number of errors that are tried.
+const TRIALS: u64 = 4;
+
+/// Maximum number of passes over rows and columns that make a matrix balanced.
+const BALANCINGS: u32 = 32;
 
 /// Linearisation of a model at a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +93,10 @@ pub struct Linearisation {
     /// The eigenvalues at states on both sides of this one, several Newton steps away. Where two equilibria meet,
     /// rounding leaves the equilibrium uncertain, and its stability differs between these states.
     pub(crate) nearby: Vec<Vec<[f64; 2]>>,
+    /// Largest real part of each eigenvalue that counts as 0.
+    pub(crate) margins: Vec<f64>,
+    /// Indices of the components across whose values the derivatives of the rates jump.
+    pub kinks: Vec<usize>,
     /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`].
     pub unsteady: Vec<usize>,
     /// Number of levels that the constraints conserve. Each level makes one eigenvalue 0, which belongs to a direction
@@ -93,6 +118,8 @@ pub enum Tendency {
     /// No eigenvalue has a positive real part, and this many have the real part 0 up to rounding: the linearisation
     /// does not decide the stability.
     Neutral(usize),
+    /// The derivatives of the rates jump here: there is no linearisation.
+    Kinked,
 }
 
 impl Linearisation {
@@ -102,18 +129,20 @@ impl Linearisation {
             .eigenvalues
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
-        let margin = NEUTRAL * largest(self.a.iter().flatten());
-        // The least number of eigenvalues whose real parts are counted, over the states that may be the equilibrium.
-        let least = |is_counted: &dyn Fn(f64) -> bool| {
-            let count = |spectrum: &Vec<[f64; 2]>| {
-                let real = spectrum.iter().map(|[re, _]| *re);
-                real.filter(|re| is_counted(*re)).count()
-            };
-            let others = self.nearby.iter().map(count);
-            others.fold(count(eigenvalues), usize::min)
+        if !self.kinks.is_empty() {
+            return Some(Tendency::Kinked);
+        }
+        // The least number of eigenvalues with this sign of the real part, over the states that may be the equilibrium.
+        let least = |sign: f64| {
+            let others = self.nearby.iter().map(|spectrum| {
+                let signs = spectrum.iter().filter(|[re, _]| sign * re > 0.0);
+                signs.count()
+            });
+            let own = eigenvalues.iter().zip(&self.margins);
+            let own = own.filter(|([re, _], margin)| sign * re > **margin).count();
+            others.fold(own, usize::min)
         };
-        let growing = least(&|re| re > margin);
-        let decaying = least(&|re| re < -margin);
+        let (growing, decaying) = (least(1.0), least(-1.0));
         // The eigenvalues of directions off the constraints are 0 and belong to no motion.
         let moving = eigenvalues.len().saturating_sub(self.levels);
         let neutral = moving.saturating_sub(growing + decaying);
@@ -261,6 +290,7 @@ fn linearise<S: Instance + Scene + Variational>(
         true => nearby(&plant, &sample, (&state, &inputs), moving),
         false => Vec::new(),
     };
+    let kinks = kinks(&plant, (&state, &inputs));
     let description = system.description();
     let n = state.len();
     let [a, b] = split(&sample.by_rates, n);
@@ -274,15 +304,22 @@ fn linearise<S: Instance + Scene + Variational>(
         Some(sampling) => sampled::strides(&plant, sampling, &state, &inputs)?,
         None => Vec::new(),
     };
+    let eigenvalues = spectrum::<S>(&a);
+    let margins = match &eigenvalues {
+        Some(eigenvalues) => margins::<S>(&a, eigenvalues),
+        None => Vec::new(),
+    };
     Ok(Linearisation {
         t: place.t,
         components: components(description),
-        eigenvalues: spectrum::<S>(&a),
+        eigenvalues,
+        margins,
         a,
         b,
         c,
         d,
         nearby,
+        kinks,
         unsteady,
         levels: sample.levels.len(),
         rates: sample.rates,
@@ -363,8 +400,69 @@ fn nearby<S: Instance + Variational>(
     [-BEYOND, BEYOND].into_iter().filter_map(beside).collect()
 }
 
+/// Components across whose values the derivatives of the rates jump.
+fn kinks<S: Instance + Variational>(
+    plant: &Plant<'_, S>,
+    (state, inputs): (&[f64], &[f64]),
+) -> Vec<usize> {
+    let is_kinked = |index: &usize| {
+        let slopes = |shift: f64| {
+            let mut beside = state.to_vec();
+            beside[*index] += shift;
+            let sample = plant.at(&beside, inputs).ok()?;
+            Some(sample.by_rates)
+        };
+        let size = match state[*index] {
+            0.0 => 1.0,
+            value => value.abs(),
+        };
+        let jump = |k: u32| {
+            let distance = size * DECADE.powi(k as i32);
+            jump(&slopes(distance)?, &slopes(-distance)?)
+        };
+        let jumps: Vec<f64> = (1..=DECADES).map(|k| jump(k).unwrap_or(f64::NAN)).collect();
+        stays(&jumps)
+    };
+    (0..state.len()).filter(is_kinked).collect()
+}
+
+/// The largest difference between rows of derivatives on both sides, relative to the largest derivative in its row.
+fn jump(above: &[Vec<f64>], below: &[Vec<f64>]) -> Option<f64> {
+    let of_row = |(above, below): (&Vec<f64>, &Vec<f64>)| {
+        let size = largest(above.iter().chain(below));
+        let apart = above
+            .iter()
+            .zip(below)
+            .map(|(above, below)| (above - below).abs());
+        match size {
+            0.0 => 0.0,
+            size => apart.fold(0.0, larger) / size,
+        }
+    };
+    let rows = above.iter().zip(below).map(of_row);
+    let found = rows.fold(0.0, larger);
+    found.is_finite().then_some(found)
+}
+
+/// True if a jump, at distances that fall by a factor of ten each, is the same for at least two of them in a row, and does
+/// not fall with the distance afterwards. A smooth function that varies over a short distance has a jump that stays and then
+/// falls; the jump at a kink stays until rounding hides it.
+fn stays(jumps: &[f64]) -> bool {
+    let is_level = |pair: &[f64]| pair[0] > JUMP && (0.5..=2.0).contains(&(pair[1] / pair[0]));
+    let falls = |pair: &[f64]| pair[0] > JUMP && FALL.contains(&(pair[1] / pair[0]));
+    let Some(last) = jumps.windows(2).rposition(is_level) else {
+        return false;
+    };
+    let after: Vec<bool> = jumps[last + 1..].windows(2).map(falls).collect();
+    !after.windows(2).any(|pair| pair[0] && pair[1])
+}
+
 /// The eigenvalues of a square matrix, given by rows.
 fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
+    spectrum_of_balanced::<S>(&balanced(rows))
+}
+
+fn spectrum_of_balanced<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
     let mut columns = S::columns();
     for (j, column) in columns.as_mut().iter_mut().enumerate().take(rows.len()) {
         let entries = column.as_mut_slice().iter_mut();
@@ -372,6 +470,61 @@ fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
     }
     let found = eigenvalues(columns.as_mut(), rows.len())?;
     Some(found.iter().collect())
+}
+
+/// A matrix with the same eigenvalues whose rows and columns are about equally large: units of the components are changed
+/// by powers of two (Osborne's balancing).
+fn balanced(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut rows = rows.to_vec();
+    let n = rows.len();
+    for _ in 0..BALANCINGS {
+        let mut is_balanced = true;
+        for i in 0..n {
+            let others = (0..n).filter(|j| *j != i);
+            let row: f64 = others.clone().map(|j| rows[i][j].abs()).sum();
+            let column: f64 = others.map(|j| rows[j][i].abs()).sum();
+            let factor = (0.5 * (row / column).log2()).round().exp2();
+            if row > 0.0 && column > 0.0 && factor.is_normal() && factor != 1.0 {
+                is_balanced = false;
+                (0..n).for_each(|j| rows[i][j] /= factor);
+                rows.iter_mut().for_each(|row| row[i] *= factor);
+            }
+        }
+        if is_balanced {
+            break;
+        }
+    }
+    rows
+}
+
+/// The largest real part of each eigenvalue that counts as 0: a multiple of the change of its real part under errors of the
+/// entries and of the iteration. For a matrix near one with fewer eigenvectors, it is far above the rounding.
+fn margins<S: Variational>(rows: &[Vec<f64>], eigenvalues: &[[f64; 2]]) -> Vec<f64> {
+    let rows = balanced(rows);
+    let size = OF_LARGEST * largest(rows.iter().flatten());
+    let mut margins = vec![0.0; eigenvalues.len()];
+    for trial in 0..TRIALS {
+        let mut random = trial;
+        let mut sign = || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            if random >> 63 == 0 { 1.0 } else { -1.0 }
+        };
+        let mut changed = rows.clone();
+        for entry in changed.iter_mut().flatten() {
+            *entry += sign() * OF_ENTRY * *entry + sign() * size;
+        }
+        let others = spectrum_of_balanced::<S>(&changed);
+        for (margin, [re, im]) in margins.iter_mut().zip(eigenvalues) {
+            let apart = |other: &&[f64; 2]| (other[0] - re).hypot(other[1] - im);
+            let nearest = others.iter().flatten();
+            let nearest = nearest.min_by(|one, other| apart(one).total_cmp(&apart(other)));
+            let change = nearest.map_or(f64::INFINITY, |nearest| (nearest[0] - re).abs());
+            *margin = larger(*margin, NEUTRAL * change);
+        }
+    }
+    margins
 }
 
 /// The largest absolute value.

@@ -1,12 +1,12 @@
 //! Runs whose inputs are functions of time and state.
 //!
-//! They run on [`Largest`], so that this code is compiled only once.
+//! They run on [`Common`], so that this code is compiled only once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use dalembert::effects::{Moment, StepView};
-use dalembert::erased::{self, Bounded, PARAMETERS};
+use dalembert::erased;
 use dalembert::forces::NoForces;
 use dalembert::inputs::Steered;
 use dalembert::integrate::{
@@ -14,25 +14,25 @@ use dalembert::integrate::{
 };
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Effect, Event, Fault, Hold, Impacts, Instance, Observer, Outcome, Projection, SceneEffects,
-    Segment, Simulation, StateVector, System, VectorField,
+    Actuated, Effect, Event, Fault, Hold, Impacts, Instance, Observer, Outcome, Projection,
+    SceneEffects, Segment, Simulation, StateVector, System, VectorField,
 };
 
 use super::{Bridge, Ending, Integrals, Reading, Settings, Solved, Watch, ending, stepping};
 use crate::integrator::{Form, Integrator};
 use crate::model::{Origin, Point, point};
-use crate::owner::Largest;
+use crate::owner::Common;
 use crate::refusal::Refusal;
 use crate::typed::prepare;
 
 /// The state of that system.
-type State<'f> = <Largest<'f> as VectorField>::State;
+type State<'f> = <Common<'f> as VectorField>::State;
 
 /// Values of all inputs.
-type Inputs = Bounded<f64, PARAMETERS>;
+type Inputs = <Common<'static> as Actuated>::Inputs;
 
 /// The system with inputs from a function.
-type Driven<'f, 'c> = Steered<Largest<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
+type Driven<'f, 'c> = Steered<Common<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
 
 /// Values of all inputs, in order, from time, positions and velocities.
 pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
@@ -73,7 +73,7 @@ pub fn steer(
     control: &Control<'_>,
     watch: &mut dyn Watch,
 ) -> Option<Result<Ending, Refusal>> {
-    let mut model = Largest::of(form)?;
+    let mut model = Common::of(form).ok()?;
     for (index, value) in values.iter().enumerate() {
         model.set_parameter(index, *value);
     }
@@ -200,7 +200,7 @@ fn run<'f, 'c>(
 }
 
 /// Observer of the system with input functions that forwards to an observer of the system without them.
-struct Driver<'a, 'f, R>(Bridge<'a, Largest<'f>, R>);
+struct Driver<'a, 'f, R>(Bridge<'a, Common<'f>, R>);
 
 /// The values at states, with the inputs at these states.
 struct Given<'a, 'f, 'c>(&'a Driven<'f, 'c>);
@@ -217,15 +217,15 @@ impl<'f> Reading<State<'f>> for Given<'_, 'f, '_> {
 
 impl<'f, 'c, R: Reading<State<'f>>> Observer<Driven<'f, 'c>> for Driver<'_, 'f, R> {
     fn step(&mut self, segment: &mut Segment<'_, State<'f>>) -> ControlFlow<()> {
-        Observer::<Largest<'f>>::step(&mut self.0, segment)
+        Observer::<Common<'f>>::step(&mut self.0, segment)
     }
 
     fn event(&mut self, event: &Event<State<'f>>) -> ControlFlow<()> {
-        Observer::<Largest<'f>>::event(&mut self.0, event)
+        Observer::<Common<'f>>::event(&mut self.0, event)
     }
 
     fn hold(&mut self, hold: &Hold<State<'f>>) -> ControlFlow<()> {
-        Observer::<Largest<'f>>::hold(&mut self.0, hold)
+        Observer::<Common<'f>>::hold(&mut self.0, hold)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::Finished;
-use crate::command::simulate::summary::relative_change;
+use crate::command::simulate::summary::{on_each, relative_change};
 use crate::error::counted;
 use crate::names;
 use crate::scalar::short;
@@ -103,11 +103,7 @@ fn impacts(finished: &Finished<'_>) -> String {
     if impacts.is_empty() {
         return "none: the model has no surfaces".to_owned();
     }
-    let each = names::surfaces(description).zip(impacts);
-    let each: Vec<String> = each
-        .map(|(name, count)| format!("{name} {count}"))
-        .collect();
-    format!("{} ({})", impacts.iter().sum::<u64>(), each.join(", "))
+    on_each(names::surfaces(description), impacts.iter().copied())
 }
 
 fn time(finished: &Finished<'_>) -> String {

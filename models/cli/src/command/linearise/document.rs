@@ -61,7 +61,7 @@ fn write_found(
     let stability = found.tendency().map(|tendency| match tendency {
         Tendency::Stable => "stable",
         Tendency::Unstable(_) => "unstable",
-        Tendency::Neutral(_) => "undecided",
+        Tendency::Neutral(_) | Tendency::Kinked => "undecided",
     });
     document.field("stability", stability)?;
     document.rows("samples", found.strides.iter().map(stride))

@@ -72,7 +72,7 @@ fn write_stability(output: &mut dyn Write, found: &Linearisation) -> io::Result<
     let eigenvalues: Vec<String> = eigenvalues.iter().map(|pair| complex(*pair)).collect();
     writeln!(output, "  eigenvalues {}", eigenvalues.join(", "))?;
     match found.tendency() {
-        Some(tendency) => writeln!(output, "  stability   {}", told(tendency)),
+        Some(tendency) => writeln!(output, "  stability   {}", told(tendency, found)),
         None => Ok(()),
     }
 }
@@ -99,7 +99,7 @@ fn rest(found: &Linearisation, state: &[&str]) -> String {
     }
 }
 
-fn told(tendency: Tendency) -> String {
+fn told(tendency: Tendency, found: &Linearisation) -> String {
     match tendency {
         Tendency::Stable => "stable: all real parts are negative".to_owned(),
         Tendency::Unstable(1) => "unstable: 1 eigenvalue has a positive real part".to_owned(),
@@ -107,9 +107,20 @@ fn told(tendency: Tendency) -> String {
             format!("unstable: {count} eigenvalues have positive real parts")
         }
         Tendency::Neutral(count) => format!(
-            "not decided by the linearisation: {} with real part 0",
+            "not decided by the linearisation: {} with real part 0 up to rounding",
             counted(count, "eigenvalue")
         ),
+        Tendency::Kinked => {
+            let across = found
+                .kinks
+                .iter()
+                .map(|&index| format!("`{}`", found.components[index]));
+            let across: Vec<String> = across.collect();
+            format!(
+                "not decided by the linearisation: at this value of {}, derivatives of the rates jump",
+                across.join(" and of ")
+            )
+        }
     }
 }
 

@@ -119,21 +119,33 @@ fn laws(finished: &Finished<'_>) -> Vec<String> {
     }
 }
 
+/// Number of surfaces up to which those without impacts are listed.
+const FEW: usize = 8;
+
+/// The number of impacts, and the numbers on each surface.
+pub(crate) fn on_each<'n>(
+    names: impl Iterator<Item = &'n str>,
+    counts: impl ExactSizeIterator<Item = u64> + Clone,
+) -> String {
+    let (total, are_few) = (counts.clone().sum::<u64>(), counts.len() <= FEW);
+    let each = names.zip(counts).filter(|(_, count)| are_few || *count > 0);
+    let each: Vec<String> = each
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect();
+    match each.is_empty() {
+        true => total.to_string(),
+        false => format!("{total} ({})", each.join(", ")),
+    }
+}
+
 fn impacts(finished: &Finished<'_>) -> String {
     let tally = &finished.record.tally;
     let surfaces = &finished.model.description().surfaces;
     if surfaces.is_empty() {
         return "none: the model has no surfaces".to_owned();
     }
-    let counts = surfaces
-        .iter()
-        .enumerate()
-        .map(|(index, surface)| format!("{} {}", surface.name, tally.on(index)));
-    let mut text = format!(
-        "{} ({})",
-        tally.total(),
-        counts.collect::<Vec<_>>().join(", ")
-    );
+    let counts = (0..surfaces.len()).map(|index| tally.on(index));
+    let mut text = on_each(names::surfaces(finished.model.description()), counts);
     for (count, kind) in [
         (tally.grazing, "grazing"),
         (tally.simultaneous, "simultaneous"),
