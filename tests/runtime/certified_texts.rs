@@ -4,9 +4,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-#[cfg(feature = "every_model")]
-use dalembert::certified::CertifiedFlow;
-use dalembert::certified::{CertifiedRun, Reason};
+use dalembert::certified::{CertifiedFlow, CertifiedRun, Reason};
 use dalembert::declaration::Described;
 use dalembert::erased::{Erased, Form};
 use dalembert::numbers::Interval;
@@ -174,4 +172,33 @@ fn a_form_that_was_compiled_has_no_kernels_over_intervals_and_says_so() {
     let mut run = CertifiedRun::new(&system, 0.0, |_| Interval::point(1.0));
     let lost = run.next_impact(1.0).err().unwrap();
     assert_eq!((lost.t, lost.reason), (0.0, Reason::NotDerived));
+}
+
+#[test]
+fn motion_spreads_along_a_chain_at_rest() {
+    let text = "Chain { coordinates { x[8]; }
+        lagrangian = sum(i in 1..=8: dot(x[i])^2/2) - sum(i in 1..=7: (x[i+1] - x[i])^2/2); }";
+    let models = dalembert_jit::load("chain", text).unwrap_or_else(|refused| panic!("{refused}"));
+    let form = Arc::clone(&models[0].form);
+    let until = 1.5;
+    let found: Vec<Interval> = with_stack(|| {
+        let chain = Erased::<16>::of(&form).unwrap();
+        let start = |i: usize| Interval::point(f64::from(u8::from(i == 0)));
+        let mut flow = CertifiedFlow::new(&chain, 0.0, start);
+        flow.run(until).unwrap();
+        (0..8).map(|i| flow.component(i)).collect()
+    });
+    // The modes of the chain are cosines of half-integer places.
+    let mode = |k: usize, i: usize| (std::f64::consts::PI * (k * (2 * i + 1)) as f64 / 16.0).cos();
+    for (i, range) in found.iter().enumerate() {
+        let terms = (0..8).map(|k| {
+            let square: f64 = (0..8).map(|j| mode(k, j) * mode(k, j)).sum();
+            let frequency = 2.0 * (std::f64::consts::PI * k as f64 / 16.0).sin();
+            mode(k, 0) * mode(k, i) / square * (frequency * until).cos()
+        });
+        let right: f64 = terms.sum();
+        assert!(range.width() < 1e-13, "{i}: {range:?}");
+        let apart = (range.middle() - right).abs();
+        assert!(apart < 1e-13, "{i}: {range:?}, {right}");
+    }
 }

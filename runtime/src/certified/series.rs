@@ -18,8 +18,9 @@ use crate::jet::LENGTH;
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::state::StateVector;
 
-/// Maximum number of trials for a tube.
-const TRIALS: u32 = 6;
+/// Maximum number of trials for a tube, or the number of components if that is larger: in a chain at rest, each trial sets
+/// one more component in motion.
+const TRIALS: usize = 6;
 
 /// Relative enlargement of a trial tube over the last one.
 const ROOM: f64 = 0.1;
@@ -217,7 +218,7 @@ fn held<S: StateVector>(
         reached.is_finite().then_some(reached)
     };
     let mut tube = reached(start)?;
-    for _ in 0..TRIALS {
+    for _ in 0..TRIALS.max(n) {
         let wider = Bounds::of(n, |i| {
             let range = tube.at(i).hull(start.at(i));
             range.widened(ROOM * range.width() + f64::MIN_POSITIVE)
