@@ -67,12 +67,12 @@ pub(super) fn unless_abrupt(
     }
 }
 
-/// The reason for an open verdict, for what jumps where.
+/// The reason for an open verdict, from the text of a jump.
 pub(super) fn reason(jump: &str) -> String {
     format!("it holds where nothing jumps, but {jump}")
 }
 
-/// What jumps where in a way that may change the volume of the configuration, as text.
+/// A jump that may change the volume of the configuration, as text.
 pub(super) fn breaks_volume(
     model: &mut Model,
     derivation: &Derivation,
@@ -162,7 +162,7 @@ struct Equations<'e> {
 }
 
 impl Equations<'_> {
-    /// What may jump where in a way that leaves the statement open, as text.
+    /// A jump that leaves the statement open, as text.
     fn jump(&self, model: &mut Model, statement: &Statement) -> Option<String> {
         let surfaces = model.acting_surfaces();
         match statement {
@@ -222,7 +222,7 @@ impl Equations<'_> {
         }
     }
 
-    /// What jumps where so that a stated density is open.
+    /// A jump that leaves a stated density open, as text.
     fn of_density(&self, model: &mut Model, value: Option<ExprId>) -> Option<String> {
         let forces = forces(model);
         let values: Vec<ExprId> = value.into_iter().collect();
@@ -248,7 +248,7 @@ impl Equations<'_> {
             .or_else(|| self.among(model, &forces, harmless))
     }
 
-    /// A place where a density that is looked for is open: it need not be continuous where the derivatives of its logarithm
+    /// A jump that leaves a density that is looked for open, as text: it need not be continuous where the derivatives of its logarithm
     /// jump.
     fn of_existence(&self, model: &mut Model) -> Option<String> {
         if let Some(place) = self.of_density(model, None) {
@@ -271,7 +271,7 @@ impl Equations<'_> {
         self.among(model, &terms, Harmless::AT_TIMES)
     }
 
-    /// A place where the conservation of these values is open.
+    /// A jump that leaves the conservation of these values open, as text.
     fn on_values(&self, model: &mut Model, values: &[ExprId]) -> Option<String> {
         if let Some(place) = self.on_states(model, Harmless::NOWHERE) {
             return Some(place);
@@ -290,7 +290,7 @@ impl Equations<'_> {
             .or_else(|| self.among(model, &forces, at_times))
     }
 
-    /// A place where the motion is open because the Lagrangian, a constraint or a position equation jumps, or has a kink and
+    /// A jump that leaves the motion open, as text: the Lagrangian, a constraint or a position equation jumps, or has a kink and
     /// is not regular. At jumps of the potential the velocities are continuous.
     fn on_states(&self, model: &mut Model, kinematic: Harmless<'_>) -> Option<String> {
         if model.is_first_order() {
@@ -315,7 +315,7 @@ impl Equations<'_> {
         is_open.then(|| motion_jumps("where the constraints are not independent"))
     }
 
-    /// A place where one of these surfaces may jump.
+    /// A jump of one of these gaps, as text.
     fn on_surfaces(
         &self,
         model: &mut Model,
@@ -364,7 +364,7 @@ impl Equations<'_> {
         terms
     }
 
-    /// A place where one of these terms may jump, unless that is harmless.
+    /// A jump of one of these terms, as text, unless it is harmless.
     fn among(&self, model: &mut Model, terms: &[ExprId], harmless: Harmless<'_>) -> Option<String> {
         let mut places = terms.iter().map(|term| self.place(model, *term, harmless));
         let place = places.find_map(|place| place)?;

@@ -120,7 +120,7 @@ pub(super) fn jump_unless(
     is_harmless: &dyn Fn(&mut Model, ExprId) -> bool,
 ) -> Option<String> {
     let equations = dynamics.roots();
-    discontinuity(model, term, Some(&equations), &mut |model, part| {
+    discontinuity(model, term, &equations, &mut |model, part| {
         is_harmless(model, part) || is_constant(model, dynamics, part, seed)
     })
 }

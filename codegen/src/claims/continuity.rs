@@ -1,10 +1,10 @@
 //! Jumps of a quantity whose rate is 0 wherever it exists: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))` at `x = pi`.
 //!
 //! Along a motion, which is analytic, a quantity made of sums, products, quotients, sines, cosines and exponentials is
-//! meromorphic where the arguments of its functions are finite, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose
-//! a branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or
-//! in the cut of `atan2`, a branch may change. So may a function of an infinite argument, such as `tanh(1/x)`: it has
-//! different limits on both sides, where all its derivatives are 0.
+//! meromorphic where the arguments of its functions are finite, so that a rate of 0 makes it constant. Roots,
+//! absolute values, logarithms and inverse functions choose a branch; without poles they are continuous, so that a rate of
+//! 0 still makes them constant. Together with a pole, or in the cut of `atan2`, a branch may change. So may a function of
+//! an infinite argument, such as `tanh(1/x)`: it has different limits on both sides, where all its derivatives are 0.
 //!
 //! A root has no rate where its argument is 0, and a motion may stay there: `y = 0` is a motion of `dot(x) = 1`,
 //! `dot(y) = sqrt(y)`, along which `x - 2*sqrt(y)` is not constant. This needs equations that are not regular, otherwise
@@ -99,13 +99,13 @@ pub(super) fn is_smooth(model: &mut Model, value: ExprId) -> bool {
 pub(super) fn discontinuity(
     model: &mut Model,
     value: ExprId,
-    equations: Option<&[ExprId]>,
+    equations: &[ExprId],
     is_constant: &mut dyn FnMut(&mut Model, ExprId) -> bool,
 ) -> Option<String> {
     let parts = branching(model, value)?;
     // A logarithm has the same limit on both sides of its pole.
     let poles = poles(&mut model.pool, &parts, WithLogarithms(false));
-    cut(model, &parts, is_constant).or_else(|| infinite(model, poles, equations, is_constant))
+    cut(model, &parts, is_constant).or_else(|| infinite(model, poles, Some(equations), is_constant))
 }
 
 /// A cut that a motion may cross, as text.

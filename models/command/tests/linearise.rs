@@ -479,7 +479,7 @@ fn a_kink_at_an_equilibrium_leaves_its_stability_open() {
     let half = "M { coordinates { x; } lagrangian = dot(x)^2/2; forces { f: -abs(x)*d(x) - dot(x)*d(x); } initial { until = 1; } }";
     let first = "M { coordinates { x; } field { dot(x) = -abs(x); } initial { until = 1; } }";
     let root = "M { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - (x + y) - x^2 - y^2; \
-        forces { f: (1 + abs(x - y + 0))*d(x) + d(y) - dot(x)*d(x) - dot(y)*d(y); } initial { until = 1; } }";
+        forces { f: (1 + abs(x - y))*d(x) + d(y) - dot(x)*d(x) - dot(y)*d(y); } initial { until = 1; } }";
     // Close to 0, rounding hides the kink.
     let pendulum = "M { coordinates { th: angle; } lagrangian = dot(th)^2/2 - 9.81*(1 - cos(th)); \
         forces { f: -dot(th)*d(th); p: 20*sqrt(2 - 2*cos(th))*d(th); } initial { until = 1; } }";

@@ -19,7 +19,7 @@ mod members;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod pilot;
-mod random;
+pub(crate) mod random;
 pub mod row;
 pub mod runner;
 mod tally;

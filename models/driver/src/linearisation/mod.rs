@@ -10,26 +10,30 @@
 //! | file | job |
 //! |---|---|
 //! | `sample.rs` | the rates and the outputs at a state, with their derivatives |
+//! | `kinks.rs` | places where the derivatives of the rates jump |
+//! | `spectrum.rs` | eigenvalues, and how far rounding may move them |
 //! | `trim.rs` | an equilibrium near a state |
 //! | `sampled.rs` | the motion from one sample to the next, across impacts |
 
+mod kinks;
 mod sample;
 mod sampled;
+mod spectrum;
 mod trim;
 
 use dalembert::contract::Variational;
 use dalembert::describe::{Description, VariationalVisitor};
 use dalembert::math::larger;
-use dalembert::state::StateVector;
-use dalembert::variations::eigenvalues;
 use dalembert::{Fault, Instance, Outcome, Scene, Undefined};
 use thiserror::Error;
 
 use crate::least_squares::damped;
 use crate::names;
 use crate::refusal::Refusal;
+use kinks::kinks;
 use sample::{Plant, Sample};
 pub use sampled::{Sampling, Stride};
+use spectrum::{margins, spectrum};
 pub use trim::Trim;
 
 /// Largest rate at an equilibrium, as a fraction of its largest term.
@@ -38,30 +42,6 @@ const AT_REST: f64 = 1e-9;
 /// Distance between an equilibrium and the neighbours at which its stability is compared, in Newton steps. At a double
 /// root, one Newton step covers half of the distance to the root.
 const BEYOND: f64 = 4.0;
-
-/// Distances of the states between which a jump of the derivatives is looked for: these powers of [`DECADE`], as fractions of
-/// the component, or of 1.
-const DECADES: u32 = 13;
-const DECADE: f64 = 0.1;
-
-/// Smallest jump, as a fraction of the largest derivative.
-const JUMP: f64 = 1e-6;
-
-/// Ratio of the jumps of a smooth function at distances with the ratio [`DECADE`].
-const FALL: core::ops::Range<f64> = 1e-4..0.3;
-
-/// Errors by which entries of A and eigenvalues may be wrong: relative to the entry, and to the largest entry.
-const OF_ENTRY: f64 = 64.0 * f64::EPSILON;
-const OF_LARGEST: f64 = 2.0 * f64::EPSILON;
-
-/// Largest real part that counts as 0, as a multiple of the change of the eigenvalue under such errors.
-const NEUTRAL: f64 = 8.0;
-
-/// Number of errors that are tried.
-const TRIALS: u64 = 4;
-
-/// Maximum number of passes over rows and columns that make a matrix balanced.
-const BALANCINGS: u32 = 32;
 
 /// Linearisation of a model at a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,9 +118,9 @@ impl Linearisation {
                 let signs = spectrum.iter().filter(|[re, _]| sign * re > 0.0);
                 signs.count()
             });
-            let own = eigenvalues.iter().zip(&self.margins);
-            let own = own.filter(|([re, _], margin)| sign * re > **margin).count();
-            others.fold(own, usize::min)
+            let pairs = eigenvalues.iter().zip(&self.margins);
+            let counted = pairs.filter(|([re, _], margin)| sign * re > **margin);
+            others.fold(counted.count(), usize::min)
         };
         let (growing, decaying) = (least(1.0), least(-1.0));
         // The eigenvalues of directions off the constraints are 0 and belong to no motion.
@@ -398,133 +378,6 @@ fn nearby<S: Instance + Variational>(
         spectrum::<S>(&split(&sample.by_rates, n)[0])
     };
     [-BEYOND, BEYOND].into_iter().filter_map(beside).collect()
-}
-
-/// Components across whose values the derivatives of the rates jump.
-fn kinks<S: Instance + Variational>(
-    plant: &Plant<'_, S>,
-    (state, inputs): (&[f64], &[f64]),
-) -> Vec<usize> {
-    let is_kinked = |index: &usize| {
-        let slopes = |shift: f64| {
-            let mut beside = state.to_vec();
-            beside[*index] += shift;
-            let sample = plant.at(&beside, inputs).ok()?;
-            Some(sample.by_rates)
-        };
-        let size = match state[*index] {
-            0.0 => 1.0,
-            value => value.abs(),
-        };
-        let jump = |k: u32| {
-            let distance = size * DECADE.powi(k as i32);
-            jump(&slopes(distance)?, &slopes(-distance)?)
-        };
-        let jumps: Vec<f64> = (1..=DECADES).map(|k| jump(k).unwrap_or(f64::NAN)).collect();
-        stays(&jumps)
-    };
-    (0..state.len()).filter(is_kinked).collect()
-}
-
-/// The largest difference between rows of derivatives on both sides, relative to the largest derivative in its row.
-fn jump(above: &[Vec<f64>], below: &[Vec<f64>]) -> Option<f64> {
-    let of_row = |(above, below): (&Vec<f64>, &Vec<f64>)| {
-        let size = largest(above.iter().chain(below));
-        let apart = above
-            .iter()
-            .zip(below)
-            .map(|(above, below)| (above - below).abs());
-        match size {
-            0.0 => 0.0,
-            size => apart.fold(0.0, larger) / size,
-        }
-    };
-    let rows = above.iter().zip(below).map(of_row);
-    let found = rows.fold(0.0, larger);
-    found.is_finite().then_some(found)
-}
-
-/// True if a jump, at distances that fall by a factor of ten each, is the same for at least two of them in a row, and does
-/// not fall with the distance afterwards. A smooth function that varies over a short distance has a jump that stays and then
-/// falls; the jump at a kink stays until rounding hides it.
-fn stays(jumps: &[f64]) -> bool {
-    let is_level = |pair: &[f64]| pair[0] > JUMP && (0.5..=2.0).contains(&(pair[1] / pair[0]));
-    let falls = |pair: &[f64]| pair[0] > JUMP && FALL.contains(&(pair[1] / pair[0]));
-    let Some(last) = jumps.windows(2).rposition(is_level) else {
-        return false;
-    };
-    let after: Vec<bool> = jumps[last + 1..].windows(2).map(falls).collect();
-    !after.windows(2).any(|pair| pair[0] && pair[1])
-}
-
-/// The eigenvalues of a square matrix, given by rows.
-fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
-    spectrum_of_balanced::<S>(&balanced(rows))
-}
-
-fn spectrum_of_balanced<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
-    let mut columns = S::columns();
-    for (j, column) in columns.as_mut().iter_mut().enumerate().take(rows.len()) {
-        let entries = column.as_mut_slice().iter_mut();
-        entries.zip(rows).for_each(|(entry, row)| *entry = row[j]);
-    }
-    let found = eigenvalues(columns.as_mut(), rows.len())?;
-    Some(found.iter().collect())
-}
-
-/// A matrix with the same eigenvalues whose rows and columns are about equally large: units of the components are changed
-/// by powers of two (Osborne's balancing).
-fn balanced(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let mut rows = rows.to_vec();
-    let n = rows.len();
-    for _ in 0..BALANCINGS {
-        let mut is_balanced = true;
-        for i in 0..n {
-            let others = (0..n).filter(|j| *j != i);
-            let row: f64 = others.clone().map(|j| rows[i][j].abs()).sum();
-            let column: f64 = others.map(|j| rows[j][i].abs()).sum();
-            let factor = (0.5 * (row / column).log2()).round().exp2();
-            if row > 0.0 && column > 0.0 && factor.is_normal() && factor != 1.0 {
-                is_balanced = false;
-                (0..n).for_each(|j| rows[i][j] /= factor);
-                rows.iter_mut().for_each(|row| row[i] *= factor);
-            }
-        }
-        if is_balanced {
-            break;
-        }
-    }
-    rows
-}
-
-/// The largest real part of each eigenvalue that counts as 0: a multiple of the change of its real part under errors of the
-/// entries and of the iteration. For a matrix near one with fewer eigenvectors, it is far above the rounding.
-fn margins<S: Variational>(rows: &[Vec<f64>], eigenvalues: &[[f64; 2]]) -> Vec<f64> {
-    let rows = balanced(rows);
-    let size = OF_LARGEST * largest(rows.iter().flatten());
-    let mut margins = vec![0.0; eigenvalues.len()];
-    for trial in 0..TRIALS {
-        let mut random = trial;
-        let mut sign = || {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            if random >> 63 == 0 { 1.0 } else { -1.0 }
-        };
-        let mut changed = rows.clone();
-        for entry in changed.iter_mut().flatten() {
-            *entry += sign() * OF_ENTRY * *entry + sign() * size;
-        }
-        let others = spectrum_of_balanced::<S>(&changed);
-        for (margin, [re, im]) in margins.iter_mut().zip(eigenvalues) {
-            let apart = |other: &&[f64; 2]| (other[0] - re).hypot(other[1] - im);
-            let nearest = others.iter().flatten();
-            let nearest = nearest.min_by(|one, other| apart(one).total_cmp(&apart(other)));
-            let change = nearest.map_or(f64::INFINITY, |nearest| (nearest[0] - re).abs());
-            *margin = larger(*margin, NEUTRAL * change);
-        }
-    }
-    margins
 }
 
 /// The largest absolute value.
