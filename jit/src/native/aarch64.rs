@@ -223,27 +223,30 @@ impl Assembly {
 
     /// Emits the sums of a group, with the order of additions of `jet::middles` and `jet::halves`.
     fn sums(&mut self, group: &Group, kept: i32) {
-        let done = self.ops.new_dynamic_label();
-        let vectors = group.sums.len().div_ceil(LANES) as Register;
-        for sum in 0..vectors {
-            dynasm!(self.ops ; .arch aarch64 ; movi V(v(sum)).d2, 0);
-        }
-        let products = Products {
-            vectors,
-            places: group.places.map(bytes),
-            kept,
-        };
-        dynasm!(self.ops ; .arch aarch64 ; cmp x24, 2 ; b.lt =>done);
-        if group.sums[0].is_half() {
-            self.halves(&products, done);
-        } else {
-            self.middles(&products, done);
-        }
-        dynasm!(self.ops ; .arch aarch64 ; =>done);
-        for sum in 0..vectors {
-            let place = bytes(group.results + LANES * usize::from(sum));
-            let (base, offset) = self.reach((SP, place), bytes(LANES));
-            dynasm!(self.ops ; .arch aarch64 ; str Q(v(sum)), [XSP(base), offset]);
+        let vectors = (group.width() / LANES) as Register;
+        let [in_row, in_frame] = group.distances();
+        for block in 0..group.blocks.len() {
+            let done = self.ops.new_dynamic_label();
+            for sum in 0..vectors {
+                dynasm!(self.ops ; .arch aarch64 ; movi V(v(sum)).d2, 0);
+            }
+            let products = Products {
+                vectors,
+                places: group.places.map(|place| bytes(place + block * in_row)),
+                kept,
+            };
+            dynasm!(self.ops ; .arch aarch64 ; cmp x24, 2 ; b.lt =>done);
+            if group.is_half() {
+                self.halves(&products, done);
+            } else {
+                self.middles(&products, done);
+            }
+            dynasm!(self.ops ; .arch aarch64 ; =>done);
+            for sum in 0..vectors {
+                let place = group.results + block * in_frame + LANES * usize::from(sum);
+                let (base, offset) = self.reach((SP, bytes(place)), bytes(LANES));
+                dynasm!(self.ops ; .arch aarch64 ; str Q(v(sum)), [XSP(base), offset]);
+            }
         }
     }
 
@@ -424,7 +427,6 @@ impl Assembly {
                 let (base, offset) = self.reach(self.address(place), bytes(1));
                 dynasm!(self.ops ; .arch aarch64 ; str D(v(from)), [XSP(base), offset]);
             }
-            Instruction::StoreVector(ref values, place) => self.store_vector(values, place),
             Instruction::Unary(unary, to, from) => self.unary(unary, to, from),
             Instruction::Binary(binary, to, from, operand) => {
                 self.binary(binary, to, from, operand);
@@ -515,27 +517,6 @@ impl Assembly {
             Binary::Sub => dynasm!(self.ops ; .arch aarch64 ; fsub D(to), D(from), D(other)),
             Binary::Mul => dynasm!(self.ops ; .arch aarch64 ; fmul D(to), D(from), D(other)),
             Binary::Div => dynasm!(self.ops ; .arch aarch64 ; fdiv D(to), D(from), D(other)),
-        }
-    }
-
-    fn store_vector(&mut self, values: &[Operand], place: Place) {
-        let low = v(self.register(values[0], SCRATCH));
-        let high = match values.get(1) {
-            Some(high) => v(self.register(*high, SCRATCH + 1)),
-            None => {
-                dynasm!(self.ops ; .arch aarch64 ; movi D(v(SCRATCH + 1)), 0);
-                v(SCRATCH + 1)
-            }
-        };
-        let (base, offset) = self.address(place);
-        match (-512..512).contains(&offset) {
-            true => {
-                dynasm!(self.ops ; .arch aarch64 ; stp D(low), D(high), [XSP(base), offset]);
-            }
-            false => {
-                self.add(ADDRESS, base, offset);
-                dynasm!(self.ops ; .arch aarch64 ; stp D(low), D(high), [X(ADDRESS)]);
-            }
         }
     }
 

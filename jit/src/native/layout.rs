@@ -27,8 +27,10 @@ const CROWDED: usize = 256;
 /// Places of coefficients in the room.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Place of the order-0 coefficient of each history that is read one coefficient at a time.
-    pub(super) alone: BTreeMap<History, usize>,
+    /// Places of the order-0 coefficients of each history: one for each sum that it is a factor of.
+    pub(super) places: BTreeMap<History, Vec<usize>>,
+    /// The histories that are read one coefficient at a time, from their first places.
+    pub(super) alone: BTreeSet<History>,
     pub(super) groups: Vec<Group>,
     /// Frame slots of the sums.
     results: BTreeMap<Sum, usize>,
@@ -40,14 +42,51 @@ pub(super) struct Layout {
     pub(super) room: usize,
 }
 
-/// Sums that are computed together, in SIMD lanes.
+/// Blocks of sums. Those of a block are computed together, in SIMD lanes; the blocks have the same number of vectors.
 #[derive(Debug)]
 pub(super) struct Group {
-    pub(super) sums: Vec<Sum>,
-    /// Places of the order-0 coefficients of the first and of the second factors. For half sums both are the same.
+    pub(super) blocks: Vec<Vec<Sum>>,
+    /// Places of the order-0 coefficients of the first and of the second factors of the first block. For half sums both
+    /// are the same.
     pub(super) places: [usize; 2],
-    /// First frame slot of the results.
+    /// First frame slot of the results of the first block.
     pub(super) results: usize,
+    /// First frame slot of the sums of the following order, without their ends, of the first block. `None` for half sums.
+    pub(super) following: Option<usize>,
+}
+
+impl Group {
+    /// Number of sums of a block, a multiple of [`LANES`].
+    pub(super) fn width(&self) -> usize {
+        self.blocks[0].len().next_multiple_of(LANES)
+    }
+
+    /// Distances between consecutive blocks: in a row, and in the frame.
+    pub(super) fn distances(&self) -> [usize; 2] {
+        let width = self.width();
+        match self.following {
+            None => [width; 2],
+            Some(_) => [2 * width; 2],
+        }
+    }
+
+    pub(super) fn is_half(&self) -> bool {
+        self.following.is_none()
+    }
+
+    /// The sums, with the places of the order-0 coefficients of their factors, and with the frame slots of their results.
+    fn places_of_sums(&self) -> impl Iterator<Item = (Sum, Vec<(History, usize)>, usize)> {
+        let [in_row, in_frame] = self.distances();
+        let count = if self.is_half() { 1 } else { 2 };
+        let blocks = self.blocks.iter().enumerate();
+        blocks.flat_map(move |(block, sums)| {
+            sums.iter().enumerate().map(move |(i, sum)| {
+                let places = self.places.map(|place| place + block * in_row + i);
+                let factors = sum.factors().into_iter().zip(places).take(count);
+                (*sum, factors.collect(), self.results + block * in_frame + i)
+            })
+        })
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,48 +103,63 @@ impl Sum {
         }
     }
 
-    pub(super) fn is_half(self) -> bool {
+    fn is_half(self) -> bool {
         matches!(self, Self::Half(_))
     }
 }
 
 impl Layout {
     pub(super) fn of(series: &Series) -> Self {
-        let mut alone = BTreeMap::new();
-        let mut sums = BTreeSet::new();
+        let (mut sums, mut alone) = (BTreeSet::new(), BTreeSet::new());
         for (_, step) in &series.steps {
             if let Step::Term(term) = step {
                 collect(term, &mut sums, &mut alone);
             }
         }
-        let mut width = alone.len().next_multiple_of(LANES);
-        let mut frame = FIXED;
+        let (mut width, mut frame) = (0, FIXED);
         let mut groups = Vec::new();
-        let mut results = BTreeMap::new();
         for is_half in [true, false] {
-            let kind: Vec<Sum> = sums
-                .iter()
-                .copied()
-                .filter(|sum| sum.is_half() == is_half)
-                .collect();
-            for sums in kind.chunks(LANES * SIDE_BY_SIDE) {
-                let count = sums.len().next_multiple_of(LANES);
-                let second = if is_half { width } else { width + count };
-                results.extend(sums.iter().copied().zip(frame..));
-                groups.push(Group {
-                    sums: sums.to_vec(),
-                    places: [width, second],
+            let kind = sums.iter().copied();
+            let kind: Vec<Sum> = kind.filter(|sum| sum.is_half() == is_half).collect();
+            let most = LANES * SIDE_BY_SIDE;
+            let (full, rest) = kind.split_at(kind.len() / most * most);
+            for sums in [full, rest].into_iter().filter(|sums| !sums.is_empty()) {
+                let count = sums.len().min(most).next_multiple_of(LANES);
+                let group = Group {
+                    blocks: sums.chunks(most).map(<[Sum]>::to_vec).collect(),
+                    places: [width, if is_half { width } else { width + count }],
                     results: frame,
-                });
-                width = second + count;
-                frame += count;
+                    following: (!is_half).then_some(frame + count),
+                };
+                let [in_row, in_frame] = group.distances();
+                width += group.blocks.len() * in_row;
+                frame += group.blocks.len() * in_frame;
+                groups.push(group);
             }
         }
+        let mut places = BTreeMap::<History, Vec<usize>>::new();
+        let mut results = BTreeMap::new();
+        for group in &groups {
+            for (sum, factors, result) in group.places_of_sums() {
+                results.insert(sum, result);
+                for (history, place) in factors {
+                    places.entry(history).or_default().push(place);
+                }
+            }
+        }
+        for history in &alone {
+            places.entry(*history).or_insert_with(|| {
+                width += 1;
+                vec![width - 1]
+            });
+        }
+        let mut width = width.next_multiple_of(LANES);
         // Rows at distances that are multiples of a large power of two compete for the same lines of the cache.
         if width.is_multiple_of(CROWDED) {
             width += LINE;
         }
         Self {
+            places,
             alone,
             groups,
             results,
@@ -122,11 +176,7 @@ impl Layout {
 }
 
 /// Collects the sums of a term, and the histories that it reads one coefficient at a time.
-fn collect(term: &Term, sums: &mut BTreeSet<Sum>, alone: &mut BTreeMap<History, usize>) {
-    let mut keep = |history: History| {
-        let place = alone.len();
-        alone.entry(history).or_insert(place);
-    };
+fn collect(term: &Term, sums: &mut BTreeSet<Sum>, alone: &mut BTreeSet<History>) {
     term.walk(&mut |term| match term {
         Term::Middle(a, b) => {
             sums.insert(Sum::Middle(*a, *b));
@@ -135,12 +185,10 @@ fn collect(term: &Term, sums: &mut BTreeSet<Sum>, alone: &mut BTreeMap<History, 
             sums.insert(Sum::Half(*a));
         }
         Term::Short(a, b, _) => {
-            keep(*a);
-            keep(*b);
+            alone.extend([*a, *b]);
         }
         Term::Steady(a, b) => {
-            keep(History::plain(*a));
-            keep(History::plain(*b));
+            alone.extend([a, b].map(|value| History::plain(*value)));
         }
         _ => {}
     });

@@ -179,7 +179,8 @@ fn places_are_reached_however_far_they_lie() {
         straight.store(b, room);
         let b = straight.load(room);
         let difference = straight.binary(Binary::Sub, [b, a]);
-        straight.push(Operation::StoreVector(vec![a, difference], written[0]));
+        straight.store(a, written[0]);
+        straight.store(difference, written[0].shifted(bytes(1)));
         straight.store(b, written[1]);
         let mut assembly = Assembly::new().expect("machine code for this processor");
         let entry = assembly.function(&registers::allocate(&straight));

@@ -31,7 +31,6 @@ pub(super) enum Operand {
 pub(super) enum Instruction {
     Move(Register, Operand),
     Store(Register, Place),
-    StoreVector(Vec<Operand>, Place),
     Unary(Unary, Register, Register),
     Binary(Binary, Register, Register, Operand),
     /// Adds a product.
@@ -174,14 +173,11 @@ impl Allocation {
             }
             Operation::Store(a, place) => {
                 let from = self.register(*a);
-                self.done(*a);
                 self.instructions.push(Instruction::Store(from, *place));
-            }
-            Operation::StoreVector(values, place) => {
-                let operands = values.iter().map(|value| self.found(*value)).collect();
-                values.iter().for_each(|value| self.done(*value));
-                self.instructions
-                    .push(Instruction::StoreVector(operands, *place));
+                if self.homes[a.index()].is_none() {
+                    self.fix(*a, Operand::Memory(*place));
+                }
+                self.done(*a);
             }
             Operation::Guard([a, bound]) => {
                 let from = self.register(*a);

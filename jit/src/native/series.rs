@@ -1,7 +1,7 @@
 //! Series as two pieces of straight-line code: the code before the loop over the orders, and the body of the loop.
 //!
-//! The kept coefficients of one order are contiguous: first those that are read one at a time, then the factors of
-//! sums. Consecutive orders have a constant distance in memory. The sums of an order are computed in SIMD lanes, before
+//! The kept coefficients of one order are contiguous: those of a history stand once for each sum that it is a factor of.
+//! Consecutive orders have a constant distance in memory. The sums of an order are computed in SIMD lanes, before
 //! everything else of that order.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,6 @@ use dalembert_codegen::program::Value as Place;
 use dalembert_codegen::program::jet::History;
 use dalembert_codegen::program::jet::terms::Term;
 
-use super::assembly::LANES;
 use super::layout::{Group, Layout, Sum, UNIT, WEIGHT};
 use super::registers::{self, Allocated};
 use super::straight::{self, Base, Binary, Operation, Straight, Unary, Value, bytes};
@@ -102,13 +101,13 @@ impl<'a> Body<'a> {
                 });
             }
         }
-        for (history, place) in &self.layout.alone {
+        for history in &self.layout.alone {
             let first = match history.weighted {
                 true => self.straight.number(0.0),
                 false => self.first(history.value),
             };
-            self.straight
-                .store(first, straight::Place::of(KEPT, *place));
+            let place = self.layout.places[history][0];
+            self.straight.store(first, straight::Place::of(KEPT, place));
         }
         for i in 0..series.components {
             let rate = self.straight.load(straight::Place::of(FIRSTS, i));
@@ -148,8 +147,11 @@ impl<'a> Body<'a> {
                     value: *value,
                     weighted,
                 };
-                if let Some(place) = layout.alone.get(&history) {
-                    let coefficient = self.coefficient(history);
+                let Some(places) = layout.places.get(&history) else {
+                    continue;
+                };
+                let coefficient = self.coefficient(history);
+                for place in places {
                     let place = straight::Place::of(NEWEST, *place);
                     self.straight.store(coefficient, place);
                 }
@@ -171,23 +173,6 @@ impl<'a> Body<'a> {
             let coefficient = self.straight.mul(step, *rate);
             let place = straight::Place::of(ROW, next.len() + i);
             self.straight.store(coefficient, place);
-        }
-        for group in &layout.groups {
-            self.keep_factors(group);
-        }
-    }
-
-    /// Keeps the factors of a group at the current order.
-    fn keep_factors(&mut self, group: &Group) {
-        let count = if group.sums[0].is_half() { 1 } else { 2 };
-        for factor in 0..count {
-            for (i, sums) in group.sums.chunks(LANES).enumerate() {
-                let sums = sums.iter();
-                let values = sums.map(|sum| self.coefficient(sum.factors()[factor]));
-                let values = values.collect();
-                let place = straight::Place::of(NEWEST, group.places[factor] + LANES * i);
-                self.straight.push(Operation::StoreVector(values, place));
-            }
         }
     }
 
@@ -297,7 +282,7 @@ impl<'a> Body<'a> {
 
     /// The places of `a_j` and `b_(k-j)`.
     fn factors(&self, factors: [History; 2], j: usize) -> [straight::Place; 2] {
-        let [a, b] = factors.map(|history| self.layout.alone[&history]);
+        let [a, b] = factors.map(|history| self.layout.places[&history][0]);
         let distance = self.layout.stride * j;
         [
             straight::Place::of(KEPT, a + distance),

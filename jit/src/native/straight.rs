@@ -100,9 +100,8 @@ pub(super) enum Operation {
     Call(OfNumbers, Value, Option<Value>),
     /// Writes sine and cosine of a number to a place of the frame.
     SineAndCosine(Value, Place),
+    /// Writes a value to a place that is not written again: the value may be read from there.
     Store(Value, Place),
-    /// Writes values to consecutive places, and zeros to the rest of a vector.
-    StoreVector(Vec<Value>, Place),
     /// Leaves the function with status 1 unless the first value is larger than the second.
     Guard([Value; 2]),
 }
@@ -127,7 +126,6 @@ impl Operation {
                     see(*b);
                 }
             }
-            Self::StoreVector(values, _) => values.iter().copied().for_each(see),
         }
     }
 
@@ -135,7 +133,7 @@ impl Operation {
     pub(super) fn has_effect(&self) -> bool {
         matches!(
             self,
-            Self::Store(..) | Self::StoreVector(..) | Self::Guard(_) | Self::SineAndCosine(..)
+            Self::Store(..) | Self::Guard(_) | Self::SineAndCosine(..)
         )
     }
 }

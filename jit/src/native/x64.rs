@@ -4,6 +4,7 @@
 #![allow(clippy::useless_conversion)]
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use dynasmrt::x64::Assembler;
 use dynasmrt::{AssemblyOffset, DynamicLabel, DynasmApi, DynasmLabelApi, ExecutableBuffer, dynasm};
@@ -24,10 +25,13 @@ pub(super) use convention;
 pub(super) const LANES: usize = 4;
 
 /// Largest number of vectors of sums in one loop.
-pub(super) const SIDE_BY_SIDE: usize = 8;
+pub(super) const SIDE_BY_SIDE: usize = 4;
 
-/// Registers of a loop over sums: vectors of sums come first, then factors, then halves.
-const FACTORS: Register = SIDE_BY_SIDE as Register;
+/// Registers of a loop over sums: vectors of sums come first, then those of the following order, then the latest second
+/// factors, then factors. Halves have the last.
+const FOLLOWING: Register = SIDE_BY_SIDE as Register;
+const LATEST: Register = 2 * FOLLOWING;
+const FACTORS: Register = 3 * FOLLOWING;
 const HALVES: Register = 15;
 
 /// General registers by their numbers.
@@ -70,7 +74,12 @@ struct Products {
 
 impl Products {
     fn place(&self, which: usize, sum: Register) -> i32 {
-        self.places[which] + bytes(LANES * usize::from(sum))
+        self.places[which] + self.of_vector(sum)
+    }
+
+    /// Offset of a vector among the vectors of a block.
+    fn of_vector(&self, sum: Register) -> i32 {
+        bytes(LANES * usize::from(sum))
     }
 }
 
@@ -195,39 +204,124 @@ impl Assembly {
 
     /// Computes the sums of a group, in the order of additions of `jet::middles` and `jet::halves`.
     fn sums(&mut self, group: &Group, kept: i32) {
-        let done = self.ops.new_dynamic_label();
-        let vectors = group.sums.len().div_ceil(LANES) as Register;
-        for sum in 0..vectors {
-            dynasm!(self.ops ; .arch x64 ; vxorpd Ry(sum), Ry(sum), Ry(sum));
-        }
+        let next = self.ops.new_dynamic_label();
         let products = Products {
-            vectors,
+            vectors: (group.width() / LANES) as Register,
             places: group.places.map(bytes),
             kept,
         };
-        dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), 2 ; jl =>done);
-        if group.sums[0].is_half() {
-            self.halves(&products, done);
-        } else {
-            self.middles(&products, done);
+        let place = bytes(group.results);
+        dynasm!(self.ops ; .arch x64
+            ; mov rsi, r12
+            ; mov rdi, r13
+            ; lea r8, [rsp + place]
+            ; mov r9, i32::try_from(group.blocks.len()).unwrap_or(i32::MAX)
+            ; =>next);
+        match group.following {
+            None => self.half_block(&products),
+            Some(following) => self.block(&products, bytes(following - group.results)),
         }
-        dynasm!(self.ops ; .arch x64 ; =>done);
-        for sum in 0..vectors {
-            let place = bytes(group.results + LANES * usize::from(sum));
-            dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [rsp + place], Ry(sum));
+        for sum in 0..products.vectors {
+            let place = products.of_vector(sum);
+            dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [r8 + place], Ry(sum));
+        }
+        if group.blocks.len() > 1 {
+            let [in_row, in_frame] = group.distances().map(bytes);
+            dynasm!(self.ops ; .arch x64
+                ; add rsi, in_row
+                ; add rdi, in_row
+                ; add r8, in_frame
+                ; dec r9
+                ; jnz =>next);
         }
     }
 
-    fn middles(&mut self, products: &Products, done: DynamicLabel) {
+    fn half_block(&mut self, products: &Products) {
+        let done = self.ops.new_dynamic_label();
+        self.clear(0..products.vectors);
+        dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), 2 ; jl =>done);
+        self.halves(products, done);
+        dynasm!(self.ops ; .arch x64 ; =>done);
+    }
+
+    /// At even orders, adds the products of this order and those of the following order that are known; at odd orders,
+    /// those that were missing.
+    fn block(&mut self, products: &Products, following: i32) {
+        let vectors = products.vectors;
+        let [odd, done] = core::array::from_fn(|_| self.ops.new_dynamic_label());
+        self.clear(0..vectors);
+        dynasm!(self.ops ; .arch x64 ; test Rq(ORDER), 1 ; jnz =>odd);
+        self.clear(FOLLOWING..FOLLOWING + vectors);
+        self.middles(products);
+        for sum in 0..vectors {
+            let place = following + products.of_vector(sum);
+            dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [r8 + place], Ry(FOLLOWING + sum));
+        }
+        dynasm!(self.ops ; .arch x64 ; jmp =>done ; =>odd ; cmp Rq(ORDER), 2 ; jl =>done);
+        for sum in 0..vectors {
+            let place = following + products.of_vector(sum);
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(sum), YWORD [r8 + place]);
+        }
+        self.add_ends(products);
+        self.add_products(products, [RCX, RAX]);
+        dynasm!(self.ops ; .arch x64 ; =>done);
+    }
+
+    fn clear(&mut self, registers: Range<Register>) {
+        for register in registers {
+            dynasm!(self.ops ; .arch x64 ; vxorpd Ry(register), Ry(register), Ry(register));
+        }
+    }
+
+    /// Adds the products of an even order, and those of the following order without its ends.
+    ///
+    /// The products `a_j b_(k-j)` and `a_j b_(k+1-j)` have the first factor in common, and the second factor of the latter
+    /// is that of the former for `j - 1`. So two rows are read for two products.
+    fn middles(&mut self, products: &Products) {
         let kept = products.kept;
+        let [head, end, done] = core::array::from_fn(|_| self.ops.new_dynamic_label());
         dynasm!(self.ops ; .arch x64
-            ; lea rax, [r12 + 2 * kept]
-            ; lea rcx, [r13 - 2 * kept]
-            ; lea rdx, [Rq(ORDER) - 3]);
-        self.add_range(products, kept);
+            ; lea rax, [rsi + 2 * kept]
+            ; lea rcx, [rdi - kept]
+            ; lea rdx, [Rq(ORDER) - 3]
+            ; test rdx, rdx
+            ; jle =>end);
+        for sum in 0..products.vectors {
+            let y = products.place(1, sum);
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(LATEST + sum), YWORD [rcx + y]);
+        }
+        dynasm!(self.ops ; .arch x64 ; =>head ; sub rcx, kept);
+        for sum in 0..products.vectors {
+            let [x, y] = [0, 1].map(|which| products.place(which, sum));
+            let factor = FACTORS + 2 * (sum % 2);
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(factor), YWORD [rax + x]);
+            self.add_product(FOLLOWING + sum, [factor, LATEST + sum], factor + 1);
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(LATEST + sum), YWORD [rcx + y]);
+            self.add_product(sum, [LATEST + sum, factor], factor);
+        }
+        dynasm!(self.ops ; .arch x64 ; add rax, kept ; dec rdx ; jnz =>head);
+        for sum in 0..products.vectors {
+            let x = products.place(0, sum);
+            let factor = FACTORS + 2 * (sum % 2);
+            dynasm!(self.ops ; .arch x64 ; vmovupd Ry(factor), YWORD [rax + x]);
+            self.add_product(FOLLOWING + sum, [factor, LATEST + sum], factor);
+        }
+        dynasm!(self.ops ; .arch x64 ; =>end);
         self.add_ends(products);
         dynasm!(self.ops ; .arch x64 ; cmp Rq(ORDER), 2 ; jle =>done);
         self.add_products(products, [RCX, RAX]);
+        dynasm!(self.ops ; .arch x64 ; =>done);
+    }
+
+    /// Adds a product to a register. `scratch` may be one of the factors.
+    fn add_product(&mut self, sum: Register, [x, y]: [Register; 2], scratch: Register) {
+        if super::IS_FUSED {
+            dynasm!(self.ops ; .arch x64 ; vfmadd231pd Ry(sum), Ry(x), Ry(y));
+        } else {
+            dynasm!(self.ops ; .arch x64
+                ; vmulpd Ry(scratch), Ry(x), Ry(y)
+                ; vaddpd Ry(sum), Ry(sum), Ry(scratch));
+        }
     }
 
     fn halves(&mut self, products: &Products, done: DynamicLabel) {
@@ -240,7 +334,7 @@ impl Assembly {
             ; mov rax, Rq(ORDER)
             ; shr rax, 1
             ; imul rax, rax, kept
-            ; add rax, r12
+            ; add rax, rsi
             ; vbroadcastsd Ry(HALVES), QWORD [=>half]);
         for sum in 0..products.vectors {
             let place = products.place(0, sum);
@@ -256,9 +350,9 @@ impl Assembly {
             ; lea rdx, [Rq(ORDER) - 1]
             ; shr rdx, 1
             ; imul rax, rdx, kept
-            ; mov rcx, r13
+            ; mov rcx, rdi
             ; sub rcx, rax
-            ; add rax, r12
+            ; add rax, rsi
             ; dec rdx);
         self.add_range(products, -kept);
         self.add_ends(products);
@@ -280,7 +374,7 @@ impl Assembly {
     /// Adds the products of order 1 and the newest order. Afterwards `rax` and `rcx` point to their rows.
     fn add_ends(&mut self, products: &Products) {
         let kept = products.kept;
-        dynasm!(self.ops ; .arch x64 ; lea rax, [r12 + kept] ; lea rcx, [r13 - kept]);
+        dynasm!(self.ops ; .arch x64 ; lea rax, [rsi + kept] ; lea rcx, [rdi - kept]);
         self.add_products(products, [RAX, RCX]);
     }
 
@@ -342,7 +436,6 @@ impl Assembly {
                 let (base, offset) = self.address(place);
                 dynasm!(self.ops ; .arch x64 ; vmovsd QWORD [Rq(base) + offset], Rx(from));
             }
-            Instruction::StoreVector(ref values, place) => self.store_vector(values, place),
             Instruction::Unary(unary, to, from) => self.unary(unary, to, from),
             Instruction::Binary(binary, to, from, operand) => match binary {
                 Binary::Add => with_operand!(self, vaddsd to from operand),
@@ -407,42 +500,6 @@ impl Assembly {
                 dynasm!(self.ops ; .arch x64 ; vandpd Rx(to), Rx(from), OWORD [=>self.magnitude]);
             }
             Unary::Sqrt => dynasm!(self.ops ; .arch x64 ; vsqrtsd Rx(to), Rx(from), Rx(from)),
-        }
-    }
-
-    fn store_vector(&mut self, values: &[Operand], place: Place) {
-        let (low, high) = (SCRATCH, SCRATCH + 1);
-        let (base, offset) = self.address(place);
-        for (half, values) in [low, high].into_iter().zip(values.chunks(2)) {
-            self.pair(half, values);
-        }
-        if values.len() > 2 {
-            dynasm!(self.ops ; .arch x64 ; vinsertf128 Ry(low), Ry(low), Rx(high), 1);
-        }
-        dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [Rq(base) + offset], Ry(low));
-    }
-
-    /// Loads one or two numbers into the lower half of a vector, and zeros behind them.
-    fn pair(&mut self, to: Register, values: &[Operand]) {
-        match values[0] {
-            Operand::Register(from) => {
-                dynasm!(self.ops ; .arch x64 ; vmovq Rx(to), Rx(from));
-            }
-            memory => self.load(to, memory),
-        }
-        let Some(second) = values.get(1) else { return };
-        match *second {
-            Operand::Register(from) => {
-                dynasm!(self.ops ; .arch x64 ; vunpcklpd Rx(to), Rx(to), Rx(from));
-            }
-            Operand::Memory(place) => {
-                let (base, offset) = self.address(place);
-                dynasm!(self.ops ; .arch x64 ; vmovhpd Rx(to), Rx(to), QWORD [Rq(base) + offset]);
-            }
-            Operand::Number(bits) => {
-                let label = self.number(bits);
-                dynasm!(self.ops ; .arch x64 ; vmovhpd Rx(to), Rx(to), QWORD [=>label]);
-            }
         }
     }
 
