@@ -77,6 +77,11 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
+    /// The surfaces that hold the motion move against each other, and no motion follows all of them.
+    Squeezed {
+        /// One of these surfaces, which the motion does not follow.
+        surface: usize,
+    },
     /// The motion crossed a surface with gap rate 0, where no impact law applies.
     TangentialCrossing {
         /// The surface.
@@ -182,6 +187,7 @@ impl Outcome {
             Self::Untaken { .. } => "untaken",
             Self::Trapped { .. } => "trapped",
             Self::Contact { .. } => "contact",
+            Self::Squeezed { .. } => "squeezed",
             Self::TangentialCrossing { .. } => "tangential_crossing",
             Self::StartsInside { .. } => "starts_inside",
             Self::BeginsBehind { .. } => "begins_behind",
@@ -265,6 +271,10 @@ impl fmt::Display for Outcome {
             Self::Contact { surface } => write!(
                 f,
                 "the state rests on surface {surface} and is pressed into it"
+            ),
+            Self::Squeezed { surface } => write!(
+                f,
+                "surface {surface} and others that hold the motion move against each other"
             ),
             Self::TangentialCrossing { surface } => {
                 write!(f, "surface {surface} was crossed at gap rate 0")

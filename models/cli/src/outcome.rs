@@ -54,6 +54,9 @@ const fn remedy(outcome: &Outcome, rests: bool) -> Option<&'static str> {
             "--rest contact, which continues along the surface after the accumulation"
         }
         Outcome::Contact { .. } => "--rest contact, which continues along the surface",
+        Outcome::Squeezed { .. } => {
+            "surfaces that leave room, or a condition (`when`) under which one of them no longer counts"
+        }
         Outcome::Spasmodic { .. } => "another --law, unless impacts are meant to add energy",
         Outcome::Ambiguous { .. } => {
             "--corner ascending or --corner descending; at a transition, --split first"
@@ -169,7 +172,7 @@ mod tests {
     use super::*;
 
     /// Outcomes that may end a run of the command line before its end.
-    const OUTCOMES: [Outcome; 24] = [
+    const OUTCOMES: [Outcome; 25] = [
         Outcome::Zeno { t: 1.0, surface: 0 },
         Outcome::Spasmodic { t: 1.0, surface: 0 },
         Outcome::Ambiguous { surfaces: [0, 1] },
@@ -186,6 +189,7 @@ mod tests {
         Outcome::Untaken { surface: 0 },
         Outcome::Trapped { surface: 0 },
         Outcome::Contact { surface: 0 },
+        Outcome::Squeezed { surface: 0 },
         Outcome::TangentialCrossing { surface: 0 },
         Outcome::StartsInside {
             surface: 0,

@@ -49,6 +49,7 @@ pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static st
             constraint: broken,
         } => vec![surface(index), constraint(broken)],
         Outcome::Contact { surface: index }
+        | Outcome::Squeezed { surface: index }
         | Outcome::LeftMode { surface: index }
         | Outcome::Trapped { surface: index }
         | Outcome::Untaken { surface: index }
@@ -135,6 +136,10 @@ pub fn explanation(description: &Description, outcome: &Outcome) -> Option<Strin
         ),
         Outcome::Trapped { surface: index } => format!(
             "at `{}` the modes lead to each other at one time, and the motion continues in none of them",
+            surface(index)
+        ),
+        Outcome::Squeezed { surface: index } => format!(
+            "`{}` and the other surfaces that hold the motion move against each other",
             surface(index)
         ),
         Outcome::Contact { surface: index } => format!(

@@ -144,7 +144,7 @@ impl Form {
         let counts = [
             Excess::of("components of a state", dimensions.state, capacity),
             Excess::of(
-                "positions and velocities",
+                "positions and velocities (rates of a first-order system)",
                 2 * dimensions.coordinates,
                 capacity,
             ),

@@ -15,6 +15,7 @@
 //! forces come first, and the surfaces push within the constraints. At most one of the held surfaces has instantaneous
 //! constraints ([`super::resting`]).
 
+use super::balance::sum;
 use super::instantaneous::{focused, is_rough};
 use super::resting::squared_rate;
 use super::sliding::Slide;
@@ -22,8 +23,9 @@ use crate::contract::Impacting;
 use crate::effects::{Change, Moment};
 use crate::error::Fault;
 use crate::forces::Forces;
+use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
-use crate::state::{StateVector, scaled};
+use crate::state::StateVector;
 
 /// Square of a gap rate, relative to that of a motion straight to the surface, up to which it may be an error.
 const ERRORS: f64 = 1.0 / (1 << 16) as f64;
@@ -32,8 +34,12 @@ const ERRORS: f64 = 1.0 / (1 << 16) as f64;
 const FORCELESS: f64 = 1.0 / (1_u128 << 80) as f64;
 /// Relative change of positions that leaves a kink.
 const STEP_ASIDE: f64 = 4.0 * f64::EPSILON;
-/// Size of a residual that counts as rounding, relative to the right-hand side.
-const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
+/// Gap rate of a held surface, relative to the speeds of the motion and of the surface, that is no rounding error.
+const MOVING: f64 = 1.0 / (1 << 30) as f64;
+
+/// Square of a gap rate, relative to that gained since the time 0, that may stem from the rounding of the time: the square of 8 units in the
+/// last place.
+const ROUNDED: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
 
 /// Surfaces along which the motion is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,17 +91,6 @@ impl<G: StateVector> Held<G> {
         (0..self.surfaces.count()).filter(|&surface| self.is_held(surface))
     }
 
-    /// The components of the held surfaces, and zeros elsewhere.
-    fn only(&self, values: &G) -> G {
-        let mut only = *values;
-        for (value, is_held) in only.as_mut_slice().iter_mut().zip(self.surfaces.iter()) {
-            if !is_held {
-                *value = 0.0;
-            }
-        }
-        only
-    }
-
     /// The sizes of the contact forces at a state. `None` for a system without second rates of its gaps.
     pub(super) fn sizes<Sys: Impacting<Gaps = G>>(
         &self,
@@ -109,7 +104,18 @@ impl<G: StateVector> Held<G> {
         let state = &self.beside_kink(system, t, state)?;
         let mut rate = system.zero_state();
         system.rate(t, state, &mut rate)?;
-        self.sizes_at(system, t, state, &rate)
+        let Some((sizes, is_followed)) = self.sizes_at(system, t, state, &rate)? else {
+            return Ok(None);
+        };
+        let pulls = || sizes.as_slice().iter().any(|&size| size < 0.0);
+        if self.iter().nth(1).is_none() || is_followed && !pulls() {
+            return Ok(Some(sizes));
+        }
+        let pushing = self.pushing(system, t, state)?;
+        Ok(Some(match pushing {
+            Some(pushing) if !is_followed || pushing.follows_all => pushing.sizes,
+            _ => sizes,
+        }))
     }
 
     /// The state, or one within rounding in the direction of the motion if the gap of a held surface has a kink there,
@@ -135,28 +141,56 @@ impl<G: StateVector> Held<G> {
         system.state_moved(state, t, &q, &qdot)
     }
 
-    /// Same as [`Held::sizes`], for a known rate without the forces.
+    /// Same as [`Held::sizes`], for a known rate without the forces; and true if the motion can follow all surfaces.
     fn sizes_at<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
         t: f64,
         state: &Sys::State,
         rate: &Sys::State,
-    ) -> Result<Option<G>, Fault> {
-        let mut motion = motion_of(system, state, rate);
-        if let Some(force) = self.trace(system, t, state, &motion)? {
-            motion = sum(&motion, 1.0, &force);
-        }
+    ) -> Result<Option<(G, bool)>, Fault> {
+        let motion = self.traced(system, t, state, rate)?;
         let Some(accelerations) = system.gap_accelerations(t, state, &motion)? else {
             return Ok(None);
         };
-        let mut sizes = self.against(system, t, state, &accelerations)?;
-        if let Some(sizes) = &mut sizes
-            && sizes.as_slice().iter().any(|&size| size < 0.0)
-        {
-            self.drop_rounding(system, (t, state), &motion, sizes)?;
+        let Some(solved) = self.solve(system, t, state, &accelerations)? else {
+            return Ok(None);
+        };
+        let is_followed = solved.is_solved(&accelerations);
+        let mut sizes = solved.sizes;
+        if sizes.as_slice().iter().any(|&size| size < 0.0) {
+            self.drop_rounding(system, (t, state), &motion, &mut sizes)?;
         }
-        Ok(sizes)
+        Ok(Some((sizes, is_followed)))
+    }
+
+    /// The rates of momenta or quasi-velocities, with the forces of instantaneous constraints.
+    fn traced<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+        rate: &Sys::State,
+    ) -> Result<Sys::Impulse, Fault> {
+        let motion = motion_of(system, state, rate);
+        Ok(match self.trace(system, t, state, &motion)? {
+            Some(force) => sum(&motion, 1.0, &force),
+            None => motion,
+        })
+    }
+
+    /// The second rates of all gaps without the forces; `None` for a system without second rates of its gaps.
+    pub(super) fn second_rates<Sys: Impacting<Gaps = G>>(
+        &self,
+        system: &Sys,
+        t: f64,
+        state: &Sys::State,
+    ) -> Result<Option<G>, Fault> {
+        let state = &self.beside_kink(system, t, state)?;
+        let mut rate = system.zero_state();
+        system.rate(t, state, &mut rate)?;
+        let motion = self.traced(system, t, state, &rate)?;
+        system.gap_accelerations(t, state, &motion)
     }
 
     /// Sets negative sizes to 0 that may be rounding errors: a surface between bodies that fall together has no force.
@@ -187,132 +221,6 @@ impl<G: StateVector> Held<G> {
         Ok(())
     }
 
-    /// The force of the instantaneous constraints for these rates of momenta or quasi-velocities.
-    fn trace<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        motion: &Sys::Impulse,
-    ) -> Result<Option<Sys::Impulse>, Fault> {
-        for surface in self.iter() {
-            if let Some(force) = system.trace(surface, t, state, motion)? {
-                return Ok(Some(force));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The reaction of the instantaneous constraints to an impulse or a force; `None` without such constraints.
-    fn reaction<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        motion: &Sys::Impulse,
-    ) -> Result<Option<Sys::Impulse>, Fault> {
-        let Some(with) = self.trace(system, t, state, motion)? else {
-            return Ok(None);
-        };
-        let without = self.trace(system, t, state, &system.zero_impulse())?;
-        Ok(without.map(|without| sum(&with, -1.0, &without)))
-    }
-
-    /// Sizes of the impulses on the held surfaces that cancel these gap rates, or of the forces that cancel these
-    /// second rates.
-    fn against<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        rates: &G,
-    ) -> Result<Option<G>, Fault> {
-        let (mut sizes, mut weights) = (rates.zeroed(), rates.zeroed());
-        for surface in self.iter() {
-            let contact = system.contact(surface, t, state)?;
-            weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
-        }
-        // The residual, and the search direction: for each surface the impulse that, by itself, cancels its residual.
-        let mut missing = scaled(&self.only(rates), -1.0);
-        let mut search = times(&weights, &missing);
-        let mut squared = product(&search, &missing);
-        let least = NEGLIGIBLE * NEGLIGIBLE * squared;
-        for _ in 0..2 * rates.count() {
-            if squared <= least {
-                break;
-            }
-            let Some(response) = self.response(system, t, state, &search)? else {
-                return Ok(None);
-            };
-            let step = squared / product(&search, &response);
-            if !step.is_finite() {
-                break;
-            }
-            sizes = sum(&sizes, step, &search);
-            missing = sum(&missing, -step, &response);
-            let wanted = times(&weights, &missing);
-            let next = product(&wanted, &missing);
-            search = sum(&wanted, next / squared, &search);
-            squared = next;
-        }
-        Ok(Some(sizes))
-    }
-
-    /// Changes of the gap rates of the held surfaces by impulses of these sizes.
-    fn response<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        sizes: &G,
-    ) -> Result<Option<G>, Fault> {
-        let mut motion = self.pushes(system, t, state, sizes)?;
-        if let Some(reaction) = self.reaction(system, t, state, &motion)? {
-            motion = sum(&motion, 1.0, &reaction);
-        }
-        let responses = system.gap_responses(t, state, &motion)?;
-        Ok(responses.map(|responses| self.only(&responses)))
-    }
-
-    /// Sum of impulses of these sizes.
-    fn pushes<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        sizes: &G,
-    ) -> Result<Sys::Impulse, Fault> {
-        let mut motion = system.zero_impulse();
-        for surface in self.iter() {
-            let contact = system.contact(surface, t, state)?;
-            motion = sum(&motion, sizes.as_slice()[surface], &contact.direction);
-        }
-        Ok(motion)
-    }
-
-    /// Adds impulses of these sizes, evaluated at `state`, to a state or to a rate.
-    fn push<Sys: Impacting<Gaps = G>>(
-        &self,
-        system: &Sys,
-        t: f64,
-        state: &Sys::State,
-        sizes: &G,
-        to: &mut Sys::State,
-    ) -> Result<(), Fault> {
-        for surface in self.iter() {
-            let contact = system.contact(surface, t, state)?;
-            system.kick(to, sizes.as_slice()[surface], &contact.direction);
-        }
-        if !self.is_rough(system, t, state)? {
-            return Ok(());
-        }
-        let pushes = self.pushes(system, t, state, sizes)?;
-        if let Some(reaction) = self.reaction(system, t, state, &pushes)? {
-            system.kick(to, 1.0, &reaction);
-        }
-        Ok(())
-    }
-
     /// True if a held surface has instantaneous constraints.
     pub(super) fn is_rough<Sys: Impacting<Gaps = G>>(
         &self,
@@ -329,10 +237,13 @@ impl<G: StateVector> Held<G> {
     }
 
     /// Corrects the drift from the held surfaces: brings gaps and gap rates to 0, each to first order.
+    ///
+    /// # Errors
+    /// [`Outcome::Squeezed`] if no motion follows all of the surfaces.
     pub(super) fn settle<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
-    ) -> Result<Change, Fault> {
+    ) -> Result<Change, Outcome> {
         if self.is_empty() {
             return Ok(Change::Kept);
         }
@@ -345,6 +256,38 @@ impl<G: StateVector> Held<G> {
         self.settle_positions(now, &gaps)?;
         self.settle_rates(now)?;
         Ok(Change::Changed)
+    }
+
+    /// Refuses a state that moves against a held surface although its gap rates were just cancelled: there is no impulse
+    /// that cancels all of them. `before` is the state before they were cancelled.
+    fn check_followed<Sys: Impacting<Gaps = G>>(
+        &self,
+        before: &Sys::State,
+        now: &Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        if self.iter().nth(1).is_none() || self.slide.is_some() {
+            return Ok(());
+        }
+        let (system, t, state) = (now.system, now.t, &*now.state);
+        let rates = system.gap_rates(t, state)?;
+        let (q, mut qdot) = (system.position(state), system.velocity(t, state)?);
+        qdot.as_mut_slice().fill(0.0);
+        let own = system.gap_rates(t, &system.state_moved(state, t, &q, &qdot)?)?;
+        for surface in self.iter() {
+            let square = |rates: &G| rates.as_slice()[surface] * rates.as_slice()[surface];
+            let of_motion = squared_rate(system, surface, (t, before))?
+                + squared_rate(system, surface, (t, state))?;
+            if square(&rates) <= MOVING * MOVING * (square(&own) + of_motion) {
+                continue;
+            }
+            // The rounding of the time changes gap rates too.
+            let gained = self.second_rates(system, t, state)?;
+            let gained = gained.map_or(0.0, |second| square(&second)) * t * t;
+            if square(&rates) > ROUNDED * gained {
+                return Err(Outcome::Squeezed { surface });
+            }
+        }
+        Ok(())
     }
 
     /// Brings the gaps to 0: moves positions by the change of velocity that an impulse would make.
@@ -367,18 +310,22 @@ impl<G: StateVector> Held<G> {
     }
 
     /// Cancels the gap rates, after enforcing the instantaneous constraints.
+    ///
+    /// # Errors
+    /// [`Outcome::Squeezed`] if no motion follows all of the surfaces.
     pub(super) fn settle_rates<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Outcome> {
         let (system, t) = (now.system, now.t);
         for surface in self.iter() {
             if let Some(focused) = focused(system, surface, t, now.state)? {
                 *now.state = focused;
             }
         }
-        let rates = system.gap_rates(t, now.state)?;
-        self.cancel(&rates, now)
+        let (before, rates) = (*now.state, system.gap_rates(t, now.state)?);
+        self.cancel(&rates, now)?;
+        self.check_followed(&before, now)
     }
 
     /// True if gap rates of the held surfaces are so small that they may be errors of the motion.
@@ -396,6 +343,34 @@ impl<G: StateVector> Held<G> {
             }
         }
         Ok(true)
+    }
+
+    /// The limit of impacts on these surfaces that follow each other at one time until none is approached; `None` if no impulses that
+    /// only push lead there.
+    pub(super) fn limit<Sys: Impacting<Gaps = G>>(
+        &self,
+        now: &Moment<'_, Sys>,
+    ) -> Result<Option<Sys::State>, Fault> {
+        let (system, t, state) = (now.system, now.t, &*now.state);
+        let rates = system.gap_rates(t, state)?;
+        let Some(pushing) = self.complementary(system, (t, state), &rates)? else {
+            return Ok(None);
+        };
+        let mut limit = *state;
+        pushing
+            .held
+            .push(system, t, state, &pushing.sizes, &mut limit)?;
+        Ok(Some(limit))
+    }
+
+    /// True if impulses on these surfaces can cancel all their gap rates.
+    pub(super) fn can_follow<Sys: Impacting<Gaps = G>>(
+        &self,
+        now: &Moment<'_, Sys>,
+    ) -> Result<bool, Fault> {
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        let solved = self.solve(now.system, now.t, now.state, &rates)?;
+        Ok(solved.is_some_and(|solved| solved.is_solved(&rates)))
     }
 
     /// Takes gap rates of held surfaces from those of the state.
@@ -424,7 +399,7 @@ impl<Sys: Impacting> Forces<Sys> for Held<Sys::Gaps> {
             return slide.add(system, t, state, rate);
         }
         let state = &self.beside_kink(system, t, state)?;
-        let Some(sizes) = self.sizes_at(system, t, state, rate)? else {
+        let Some((sizes, _)) = self.sizes_at(system, t, state, rate)? else {
             return Ok(());
         };
         if let Some(force) = self.trace(system, t, state, &motion_of(system, state, rate))? {
@@ -452,26 +427,4 @@ fn motion_of<Sys: Impacting>(system: &Sys, state: &Sys::State, rate: &Sys::State
         *part = *rate;
     }
     motion
-}
-
-fn product<V: StateVector>(a: &V, b: &V) -> f64 {
-    let pairs = a.as_slice().iter().zip(b.as_slice());
-    pairs.map(|(a, b)| a * b).sum()
-}
-
-fn times<V: StateVector>(a: &V, b: &V) -> V {
-    let mut times = *a;
-    for (value, b) in times.as_mut_slice().iter_mut().zip(b.as_slice()) {
-        *value *= b;
-    }
-    times
-}
-
-/// `a + factor * b`
-fn sum<V: StateVector>(a: &V, factor: f64, b: &V) -> V {
-    let mut sum = *a;
-    for (value, b) in sum.as_mut_slice().iter_mut().zip(b.as_slice()) {
-        *value += factor * b;
-    }
-    sum
 }

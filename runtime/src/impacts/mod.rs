@@ -1,6 +1,7 @@
 //! Impacts: the effect that finds them and applies their laws.
 
 mod accumulation;
+mod balance;
 mod bottom;
 mod coincident;
 mod corner;
@@ -16,6 +17,7 @@ mod instantaneous;
 mod kinks;
 mod passing;
 mod place;
+mod pushing;
 mod quiet;
 mod release;
 mod repeats;
@@ -30,6 +32,7 @@ mod tangency;
 mod told;
 mod touch;
 mod watch;
+mod wave;
 
 pub use held::Held;
 pub use impulse::{IMPACT_BUDGET, Impacts};

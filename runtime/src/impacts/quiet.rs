@@ -2,7 +2,8 @@
 //! impulse on another surface changes that by rounding errors, if it is orthogonal. Such a surface is not approached.
 //!
 //! Such a change is below `2^-48 sqrt(c) |v|`, where `c` is the compliance of the surface and `|v|` the velocity in the
-//! metric, before or after the impulse.
+//! metric, before or after the impulse. A motion at rest on surfaces has the rounding errors of their forces: gap rates below
+//! `2^-40` of those that the motion would gain without these forces in the last step.
 
 use super::corner::{EQUAL, SAME, energy_apart};
 use super::held::Held;
@@ -31,6 +32,36 @@ pub(super) fn quieten_held<Sys: Impacting>(
         if hits.is_approached(surface, rates) && !hits.has_fallen(surface) {
             let rate = rates.as_slice()[surface];
             quieten(hits, surface, [rate, rate], SAME * size, now)?;
+        }
+    }
+    Ok(())
+}
+
+/// Ratio of a gap rate to that gained without the contact forces, below which it is a rounding error of these.
+const BALANCED: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// Raises the thresholds of surfaces whose gap rates are rounding errors of the forces by which others hold the motion in the last
+/// step, of this length.
+pub(super) fn quieten_balanced<Sys: Impacting>(
+    hits: &mut Hits<Sys::Gaps>,
+    held: &Held<Sys::Gaps>,
+    rates: &Sys::Gaps,
+    length: f64,
+    now: &Moment<'_, Sys>,
+) -> Result<(), Outcome> {
+    if held.is_empty() || held.slide().is_some() || hits.approached(rates) == 0 {
+        return Ok(());
+    }
+    let Some(second) = held.second_rates(now.system, now.t, now.state)? else {
+        return Ok(());
+    };
+    for surface in 0..hits.count() {
+        let (rate, gained) = (
+            rates.as_slice()[surface],
+            second.as_slice()[surface] * length,
+        );
+        if rate.abs() <= BALANCED * gained.abs() && !hits.has_fallen(surface) {
+            hits.set_still(surface, -rate);
         }
     }
     Ok(())

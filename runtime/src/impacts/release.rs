@@ -68,8 +68,8 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         .fold(0.0_f64, |most, size| most.max(size.abs()));
     let above = whole[0] >= -ROUNDING * largest;
     if !above && whole.iter().all(|&size| size < 0.0) {
-        // The surface holds the motion, but throughout the step its force would have to pull.
-        return Err(Outcome::Contact { surface });
+        // It was left at the start of the step, as another surface on which its force depended.
+        return Ok(Some((0.0, Some(surface))));
     }
     let fault = Cell::new(None);
     let step = RefCell::new(step);

@@ -376,6 +376,19 @@ impl<G: StateVector> Resting<G> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
+        if self.held.iter().nth(1).is_some()
+            && let Some(pushing) = self.held.pushing(now.system, now.t, now.state)?
+            && pressed.is_none_or(|surface| pushing.held.is_held(surface))
+        {
+            let held = self.held;
+            for surface in held
+                .iter()
+                .filter(|&surface| !pushing.held.is_held(surface))
+            {
+                self.leave(surface, now, observer)?;
+            }
+            return Ok(());
+        }
         loop {
             let Some(sizes) = self.held.sizes(now.system, now.t, now.state)? else {
                 return Ok(());

@@ -7,9 +7,10 @@ use super::corner::Recurrence;
 use super::hits::Hits;
 use super::impulse::Impacts;
 use super::instantaneous::focused;
-use super::quiet::{quieten_beside, quieten_held};
+use super::quiet::{quieten_balanced, quieten_beside, quieten_held};
 use super::resting::is_at_rest;
 use super::sliding::Slide;
+use super::wave::{Limit, Wave};
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::error::Fault;
@@ -53,7 +54,7 @@ struct Strike {
 enum Next {
     /// Impacts on the surfaces that are still approached.
     Impacts,
-    /// Contact: infinitely many impacts have reached their limit, and surfaces still approached hold the motion.
+    /// Infinitely many impacts at one time.
     Rest,
 }
 
@@ -93,10 +94,22 @@ impl<Sys: Impacting> Impacts<Sys> {
             hits.set_done(slide.back);
         }
         quieten_held(&mut hits, self.resting.held(), &rates, now)?;
+        let length = self.watch.length;
+        quieten_balanced(&mut hits, self.resting.held(), &rates, length, now)?;
+        for surface in 0..hits.count() {
+            // If the motion presses into it from now on, it is held.
+            if self.watch.is_tangential_crossing(surface)
+                && self.may_rest(surface)
+                && !self.law_of(now.system, surface).is_map()
+            {
+                hits.set_done(surface);
+            }
+        }
         let mut several = hits.approached(&rates) > 1;
         let mut verdict = self.verdict();
         let mut passages = Passages(0);
         let mut recurrence = Recurrence::new();
+        let mut wave = Wave::none(&rates);
         while let Some(surface) = self.next(&mut hits, &rates, &mut verdict, now)? {
             if now.counters.impacts >= self.budget {
                 return Err(Outcome::ImpactBudget);
@@ -118,9 +131,10 @@ impl<Sys: Impacting> Impacts<Sys> {
                 again: hits.note_struck(surface),
             };
             let (arrived, rates_before) = (*now.state, rates);
-            let next;
+            let mut next;
             (rates, next) = self.impact(strike, now, observer)?;
             if is_map {
+                wave = Wave::none(&rates);
                 let changes = now.system.mode(now.state) != now.system.mode(&arrived);
                 match changes {
                     true => passages.count(surface)?,
@@ -141,12 +155,29 @@ impl<Sys: Impacting> Impacts<Sys> {
                 hits.set_still(surface, -rates.as_slice()[surface]);
                 quieten_beside(&mut hits, surface, [&rates_before, &rates], &arrived, now)?;
                 self.watch.touch(&mut hits, &rates, now)?;
+                let after = rates.as_slice()[surface];
+                wave.add(surface, [rate, after]);
                 if recurrence.add(now)? {
-                    return Err(Outcome::Zeno { t: now.t, surface });
+                    if !(wave.is_lossy() && self.may_rest(surface)) {
+                        return Err(Outcome::Zeno { t: now.t, surface });
+                    }
+                    recurrence = Recurrence::new();
+                    wave.seek_limit();
+                    next = Next::Rest;
                 }
             }
             if next == Next::Rest {
-                break;
+                match self.reach_limit(&mut wave, surface, now)? {
+                    Limit::Reached(still) => {
+                        rates = now.system.gap_rates(now.t, now.state)?;
+                        for surface in still.iter() {
+                            hits.set_still(surface, -rates.as_slice()[surface]);
+                        }
+                        self.watch.touch(&mut hits, &rates, now)?;
+                    }
+                    Limit::Later => {}
+                    Limit::Unknown => break,
+                }
             }
             several = several || hits.approached(&rates) > 0;
         }
