@@ -198,6 +198,69 @@ fn symmetries_that_lead_across_a_jump() {
     check(&ring, "symmetry: x*partial(y) - y*partial(x)", Proved);
 }
 
+/// On both sides of a kink the Lagrangian gains the derivative of a function, and both functions do not fit.
+#[test]
+fn symmetries_that_lead_across_a_kink() {
+    let with = |potential: &str| {
+        let kinetic = "(dot(x)^2 + dot(y)^2)/2";
+        format!("coordinates {{ x; y; }} lagrangian = {kinetic} - {potential};")
+    };
+    // No force at x < 0, a constant one at x > 0.
+    let ramp = with("(sqrt(x^2) + x)/2");
+    for claim in ["symmetry: partial(x)", "symmetry: t*partial(x)"] {
+        open(&ramp, claim, "where `x^2` is 0");
+    }
+    check(&ramp, "symmetry: partial(y)", Proved);
+    open(
+        &with("exp(ln(x^2)/2)"),
+        "symmetry: partial(x)",
+        "where `x` is 0",
+    );
+    let wave = "coordinates { phi: angle; } lagrangian = dot(phi)^2/2 - acos(cos(phi));";
+    open(
+        wave,
+        "symmetry: partial(phi)",
+        "where `1 - cos(phi)^2` is 0",
+    );
+    let cone = with("sqrt((x - y)^2)");
+    open(&cone, "symmetry: partial(x)", "where `(x - y)^2` is 0");
+    check(&cone, "symmetry: partial(x) + partial(y)", Proved);
+    let well = with("sqrt(x^2 + y^2)");
+    check(&well, "symmetry: x*partial(y) - y*partial(x)", Proved);
+    let magnetic = with("sqrt(x^2)*dot(y)");
+    open(&magnetic, "symmetry: partial(x)", "where `x^2` is 0");
+    check(&with("9*x"), "symmetry: partial(x)", Proved);
+
+    // The flow gives a velocity that jumps at t = 0.
+    open(FREE, "symmetry: abs(t)*partial(x)", "where `abs(t)` is 0");
+    check(FREE, "symmetry: t*partial(x)", Proved);
+}
+
+/// A density exists before and after the jump. It is continuous along motions, and cannot change at all places at once.
+#[test]
+fn volumes_whose_growth_jumps_at_a_time() {
+    let drag =
+        |wave: &str| format!("{FREE} forces {{ f: {wave}*dot(y)*(dot(x)*d(x) + dot(y)*d(y)); }}");
+    for claim in ["density: exact", "volume: kept"] {
+        open(&drag("abs(t)/t"), claim, "where `t` is 0");
+    }
+    open(
+        &drag("sqrt(sin(t)^2)/sin(t)"),
+        "density: exact",
+        "where `sin(t)` is 0",
+    );
+    for claim in ["density: none", "density: locally_exact"] {
+        open(&drag("abs(x)/x"), claim, "where `x` is 0");
+    }
+    check(&drag("1"), "density: exact", Proved);
+    let pushed = format!("{FREE} forces {{ f: abs(t)/t*d(y); }}");
+    for claim in ["density: exact", "volume: kept", "symplectic"] {
+        check(&pushed, claim, Proved);
+    }
+    let turning = "coordinates { x; y; } field { dot(x) = abs(t)/t*y; dot(y) = -x; }";
+    check(turning, "volume: kept", Proved);
+}
+
 #[test]
 fn surfaces_that_jump() {
     let wall = format!("{FREE} impacts {{ w: x >= sqrt(y^2)/y; }}");

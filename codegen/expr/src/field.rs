@@ -1,9 +1,9 @@
-//! Arithmetic modulo a prime just below 2^61.
+//! Arithmetic modulo primes between 2^60 and 2^61.
 //!
-//! All primes are `p = 2^61 - c` with small `c`, so that a product is reduced by two multiplications by `c`. All are
-//! 3 modulo 4, so exactly one of `u` and `-u` is a square for `u != 0`. The nonzero squares form a group of odd order
-//! `(p-1)/2`. In this group, roots of a degree coprime to the order are unique and multiplicative. Squares therefore
-//! stand for positive numbers: `sqrt(a b) = sqrt(a) sqrt(b)` holds for squares `a`, `b`.
+//! The primes of a pool are drawn from its seed. All are 23 modulo 24, so exactly one of `u` and `-u` is a square for
+//! `u != 0`. The nonzero squares form a group of odd order `(p-1)/2`. In this group, roots of a degree coprime to the
+//! order are unique and multiplicative. Squares therefore stand for positive numbers: `sqrt(a b) = sqrt(a) sqrt(b)`
+//! holds for squares `a`, `b`.
 
 use num_bigint::BigInt;
 
@@ -12,45 +12,52 @@ use crate::rational::Rational;
 const BITS: u32 = 61;
 const MASK: u64 = (1 << BITS) - 1;
 
-/// A prime `p = 2^61 - c`; residues are `u64` below `p`.
+/// Number of primes that are used in turn.
+pub(crate) const PRIMES: usize = 9;
+
+/// A prime `p` between 2^60 and 2^61; residues are `u64` below `p`.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Modulus {
-    deficit: u64,
+    prime: u64,
+    /// `2^122 / p`, rounded down.
+    reciprocal: u64,
 }
 
 impl Modulus {
     /// The Mersenne prime `2^61 - 1`.
-    pub const MERSENNE: Self = Self { deficit: 1 };
+    pub const MERSENNE: Self = Self::of(MASK);
 
-    /// The Mersenne prime, then [`Modulus::POSITIVE`].
-    pub const ALL: [Self; 9] = [
-        Self::MERSENNE,
-        Self::POSITIVE[0],
-        Self::POSITIVE[1],
-        Self::POSITIVE[2],
-        Self::POSITIVE[3],
-        Self::POSITIVE[4],
-        Self::POSITIVE[5],
-        Self::POSITIVE[6],
-        Self::POSITIVE[7],
-    ];
+    /// `modulus` is between 2^60 and 2^61.
+    const fn of(modulus: u64) -> Self {
+        Self {
+            prime: modulus,
+            reciprocal: ((1 << (2 * BITS)) / modulus as u128) as u64,
+        }
+    }
 
-    /// The largest primes below 2^61 with two properties: 2, 3, 5, ..., 17 are squares, as positive numbers should be,
-    /// and `(p-1)/2` is coprime to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
-    pub const POSITIVE: [Self; 8] = [
-        Self { deficit: 11_913 },
-        Self { deficit: 116_673 },
-        Self { deficit: 132_033 },
-        Self { deficit: 148_593 },
-        Self { deficit: 150_993 },
-        Self { deficit: 155_193 },
-        Self { deficit: 204_033 },
-        Self { deficit: 219_153 },
-    ];
+    /// Different primes that follow from a seed. 2, 3, 5, ..., 17 are squares, as positive numbers should be, and
+    /// `(p-1)/2` is coprime to 2, 3, 5, 7 and 11, so that roots of these degrees exist.
+    ///
+    /// About 5e13 primes have these properties. They are drawn, and not the same for all declarations, because numbers
+    /// of a declaration can be multiples of primes that are known beforehand.
+    pub(crate) fn drawn(seed: u64) -> [Self; PRIMES] {
+        let mut state = mix(seed);
+        let mut found = [Self::MERSENNE; PRIMES];
+        for k in 0..PRIMES {
+            while found[k] == Self::MERSENNE || found[..k].contains(&found[k]) {
+                state = mix(state);
+                let candidate = (state & (MASK >> 1) | (1 << (BITS - 1))) / 24 * 24 + 23;
+                if candidate <= MASK && has_roots(candidate) && is_prime(candidate) {
+                    found[k] = Self::of(candidate);
+                }
+            }
+        }
+        found
+    }
 
     /// `p`
     pub fn prime(self) -> u64 {
-        (1 << BITS) - self.deficit
+        self.prime
     }
 
     /// `a + b`
@@ -73,11 +80,19 @@ impl Modulus {
         self.reduce(u128::from(a) * u128::from(b))
     }
 
-    /// The residue of a 128-bit number.
-    pub(crate) fn reduce(self, wide: u128) -> u64 {
-        // 2^61 = c mod p, c < 2^18: the first fold leaves less than 2^86, the second less than 2^61 + 2^43 < 2 p.
-        let fold = u128::from(wide as u64 & MASK) + (wide >> BITS) * u128::from(self.deficit);
-        self.reduce_once((fold as u64 & MASK) + (fold >> BITS) as u64 * self.deficit)
+    /// The residue of a number below `p^2` (Barrett).
+    fn reduce(self, wide: u128) -> u64 {
+        let high = u128::from((wide >> (BITS - 1)) as u64);
+        let quotient = ((high * u128::from(self.reciprocal)) >> (BITS + 1)) as u64;
+        // The quotient is too small by 2 at most, so the rest is less than 3 p < 2^63.
+        let rest = (wide as u64).wrapping_sub(quotient.wrapping_mul(self.prime));
+        self.reduce_once(self.reduce_once(rest))
+    }
+
+    /// The residue of any number.
+    pub(crate) fn reduce_wide(self, wide: u128) -> u64 {
+        let [high, low] = [wide >> 64, wide & u128::from(u64::MAX)].map(|part| self.reduce(part));
+        self.add(self.mul(high, self.reduce(1 << 64)), low)
     }
 
     /// `base^exponent`; 1 for exponent 0.
@@ -160,6 +175,28 @@ impl Modulus {
     }
 }
 
+/// True if 5, 7, 11, 13 and 17 are squares modulo the prime `p`, which is 23 modulo 24, and 5, 7 and 11 do not divide `p - 1`. By
+/// the law of quadratic reciprocity, `p` is then a square modulo 5, 13 and 17, and no square modulo 7 and 11.
+fn has_roots(p: u64) -> bool {
+    let (of_5, of_7, of_11, of_13, of_17) = (p % 5, p % 7, p % 11, p % 13, p % 17);
+    of_5 == 4
+        && matches!(of_7, 3 | 5 | 6)
+        && matches!(of_11, 2 | 6 | 7 | 8 | 10)
+        && matches!(of_13, 1 | 3 | 4 | 9 | 10 | 12)
+        && matches!(of_17, 1 | 2 | 4 | 8 | 9 | 13 | 15 | 16)
+}
+
+/// True for primes among the numbers between 2^60 and 2^61 that are 3 modulo 4. The test of Miller and Rabin for these
+/// bases is exact below 3e24 (Sorenson, Webster).
+fn is_prime(number: u64) -> bool {
+    const BASES: [u64; 13] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41];
+    let field = Modulus::of(number);
+    BASES.iter().all(|base| {
+        let power = field.pow(*base, (number - 1) / 2);
+        power == 1 || power == number - 1
+    })
+}
+
 /// A pseudorandom nonzero residue. It is a function of the modulus and the words only, so it is the same in every run.
 pub(crate) fn draw(modulus: Modulus, words: &[u64]) -> u64 {
     let mut state = 0x243f_6a88_85a3_08d3; // the first digits of pi
@@ -186,9 +223,30 @@ pub(crate) fn mix(state: u64) -> u64 {
 mod tests {
     use super::*;
 
+    fn moduli() -> impl Iterator<Item = Modulus> {
+        let drawn = [0, 1, u64::MAX].into_iter().flat_map(Modulus::drawn);
+        drawn.chain([Modulus::MERSENNE])
+    }
+
+    #[test]
+    fn the_primes_of_different_seeds_differ() {
+        let primes: std::collections::BTreeSet<u64> = (0..200)
+            .flat_map(Modulus::drawn)
+            .map(Modulus::prime)
+            .collect();
+        assert_eq!(primes.len(), 200 * PRIMES);
+        assert!(
+            primes
+                .iter()
+                .all(|prime| (1 << 60..1 << 61).contains(prime))
+        );
+        assert!(is_prime(MASK));
+        assert!(!is_prime(2_147_483_647 * 1_073_741_789));
+    }
+
     #[test]
     fn products_agree_with_wide_division() {
-        for modulus in Modulus::ALL {
+        for modulus in moduli() {
             let p = modulus.prime();
             let mut samples = vec![0, 1, 2, p - 1, p - 2, p / 2];
             samples.extend((0..20).map(|k| draw(modulus, &[k])));
@@ -196,6 +254,9 @@ mod tests {
                 for b in &samples {
                     let expected = (u128::from(*a) * u128::from(*b) % u128::from(p)) as u64;
                     assert_eq!(modulus.mul(*a, *b), expected);
+                    let wide = (u128::from(*a) << 67) + u128::from(*b);
+                    let expected = (wide % u128::from(p)) as u64;
+                    assert_eq!(modulus.reduce_wide(wide), expected);
                 }
             }
         }
@@ -203,7 +264,7 @@ mod tests {
 
     #[test]
     fn moduli_satisfy_fermat_for_many_bases() {
-        for modulus in Modulus::ALL {
+        for modulus in moduli() {
             for base in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37] {
                 assert_eq!(modulus.pow(base, modulus.prime() - 1), 1);
             }
@@ -213,7 +274,7 @@ mod tests {
 
     #[test]
     fn small_numbers_are_squares_and_have_roots_for_the_positive_moduli() {
-        for modulus in Modulus::POSITIVE {
+        for modulus in Modulus::drawn(1) {
             assert!(
                 [2, 3, 5, 7, 11, 13, 17]
                     .iter()
@@ -231,7 +292,7 @@ mod tests {
 
     #[test]
     fn inverses_and_roots_undo_products() {
-        for modulus in Modulus::ALL {
+        for modulus in moduli() {
             assert_eq!(modulus.inv(0), None);
             for k in 0..20 {
                 let a = draw(modulus, &[k, 7]);
@@ -247,7 +308,7 @@ mod tests {
 
     #[test]
     fn rational_numbers_have_residues() {
-        let modulus = Modulus::ALL[1];
+        let [modulus, ..] = Modulus::drawn(1);
         let value = modulus.rational(&Rational::new(-3, 7)).unwrap();
         assert_eq!(modulus.mul(value, 7), modulus.integer(-3));
         let big = Rational::from_decimal("1e30").unwrap();

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::field::{Modulus, PRIMES};
 use crate::intern::{Table, WordHash, WordHasher};
 use crate::node::{Assumption, ExprId, Node, SymbolId};
 use crate::rational::Rational;
@@ -22,6 +23,9 @@ pub struct Pool {
     pub(crate) derivatives: Vec<Vec<u32>>,
     /// Remaining steps.
     budget: u64,
+    seed: u64,
+    /// The primes of the seed.
+    moduli: [Modulus; PRIMES],
 }
 
 #[derive(Clone, Debug)]
@@ -65,12 +69,33 @@ impl Pool {
             sets: SymbolSets::new(),
             derivatives: Vec::new(),
             budget: u64::MAX,
+            seed: 0,
+            moduli: Modulus::drawn(0),
         };
         pool.intern(Node::Number(Rational::ZERO));
         pool.intern(Node::Number(Rational::ONE));
         pool.intern(Node::Pi);
         pool.budget = budget;
         pool
+    }
+
+    /// Sets the seed of the random primes and points by which identities are tested.
+    ///
+    /// It should follow from the text whose expressions are tested. With a seed that is known beforehand, a text can hold numbers that are 0 at
+    /// all its points.
+    pub fn set_seed(&mut self, seed: u64) {
+        self.seed = seed;
+        self.moduli = Modulus::drawn(seed);
+    }
+
+    /// The seed of the random primes and points by which identities are tested.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The random primes modulo which identities are tested, used in turn.
+    pub(crate) fn moduli(&self) -> [Modulus; PRIMES] {
+        self.moduli
     }
 
     /// True if the budget is spent. Expressions made after that are not the requested ones.

@@ -10,7 +10,7 @@
 //!   Otherwise the answer is [`Verdict::Undecided`].
 
 use crate::branch::Branches;
-use crate::field::{Modulus, mix};
+use crate::field::{Modulus, PRIMES, mix};
 use crate::node::{Assumption, ExprId, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
@@ -138,7 +138,9 @@ pub type Frozen = (SymbolId, Option<u64>);
 pub struct SamplePoints {
     seed: u64,
     denominator: i64,
-    moduli: &'static [Modulus],
+    moduli: [Modulus; PRIMES],
+    /// Position of the only prime in use, if there is only one.
+    only: Option<usize>,
     drawn: usize,
     limit: usize,
     squares: Squares,
@@ -155,15 +157,11 @@ impl SamplePoints {
     /// roots.
     pub(crate) fn new(pool: &Pool, order: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
         let limit = (DRAW_WORK / order.len().max(1)).clamp(DRAWS.0, DRAWS.1);
-        let moduli: &[Modulus] = if profile.branches {
-            &Modulus::POSITIVE
-        } else {
-            &Modulus::ALL
-        };
         Some(Self {
-            seed,
+            seed: mix(pool.seed()) ^ seed,
             denominator: profile.denominator?,
-            moduli,
+            moduli: pool.moduli(),
+            only: None,
             drawn: 0,
             limit,
             squares: Squares::of(pool, order),
@@ -171,14 +169,16 @@ impl SamplePoints {
     }
 
     /// The primes that are used in turn.
-    pub fn moduli(&self) -> &'static [Modulus] {
-        self.moduli
+    pub fn moduli(&self) -> &[Modulus] {
+        match self.only {
+            Some(position) => &self.moduli[position..=position],
+            None => &self.moduli,
+        }
     }
 
     /// The same points, all modulo the prime at this position (taken modulo the number of primes).
     pub fn modulo(mut self, position: usize) -> Self {
-        let position = position % self.moduli.len();
-        self.moduli = &self.moduli[position..=position];
+        self.only = Some(position % PRIMES);
         self
     }
 
@@ -207,7 +207,7 @@ impl SamplePoints {
         mut f: impl FnMut(&mut ModularPoint) -> Option<T>,
     ) -> Option<T> {
         (0..self.limit).find_map(|_| {
-            let modulus = self.moduli[self.drawn % self.moduli.len()];
+            let modulus = self.moduli[self.only.unwrap_or(self.drawn % PRIMES)];
             self.drawn += 1;
             let seed = mix(mix(self.seed).wrapping_add(self.drawn as u64));
             let mut point = ModularPoint::with_denominator(modulus, seed, self.denominator);

@@ -15,10 +15,15 @@
 //!   positions. It need not keep other forms. A jump of a force at certain velocities changes volumes.
 //! - A kink of the Lagrangian makes forces jump as well. The factor then preserves the symplectic form, as the limit of those
 //!   of smooth Lagrangians. It need not preserve other forms.
-//! - Jumps of potentials and forces at certain times are harmless: every motion has them at the same time.
+//! - Jumps of potentials and forces at certain times are harmless: every motion has them at the same time. Where the growth
+//!   of volumes jumps, a density may not exist although it exists before and after.
 //! - Almost all motions avoid sets of codimension 2, such as a centre of attraction. Claims about volumes and forms hold there.
-//! - A symmetry stays open if its flow crosses a jump, and so does a claim about a surface whose gap jumps: the motion meets
-//!   a face that the gap does not describe.
+//! - A symmetry stays open if its flow crosses a jump, or a kink of a Lagrangian that it does not keep: on each side the
+//!   Lagrangian gains the derivative of a function, and both functions need not fit. It also stays open if the derivatives of
+//!   the field jump, because then so do the velocities that its flow gives.
+//! - An input may jump at any time. A claim about a quantity that depends on it, such as `dot(x)` where it gives that rate,
+//!   stays open.
+//! - A claim about a surface whose gap jumps stays open: the motion meets a face that the gap does not describe.
 
 use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
@@ -31,6 +36,7 @@ use super::dynamics::Dynamics;
 use super::examine::explicit;
 use super::finding::Verdict;
 use super::kept::stated_or_one;
+use super::symmetry::keeps_lagrangian;
 use crate::mechanics::Derivation;
 use crate::model::{Claim, Existence, Model, Statement};
 
@@ -45,9 +51,11 @@ pub(super) fn unless_abrupt(
 ) -> Verdict {
     let statement = &claim.statement;
     let rests_on_smoothness = match statement {
+        // The density that refutes the claim may break at the jump.
         Statement::Conserved { holds: false, .. } | Statement::Existence(Existence::None) => {
             matches!(verdict, Verdict::Refuted(_))
         }
+        Statement::Existence(Existence::Local) => !matches!(verdict, Verdict::Undecided(_)),
         _ => matches!(verdict, Verdict::Proved(_)),
     };
     if !rests_on_smoothness {
@@ -164,6 +172,11 @@ struct Equations<'e> {
 impl Equations<'_> {
     /// A jump that leaves the statement open, as text.
     fn jump(&self, model: &mut Model, statement: &Statement) -> Option<String> {
+        if let Some(input) = supplied(model, statement) {
+            return Some(format!(
+                "the claimed quantity may jump with the input `{input}`"
+            ));
+        }
         let surfaces = model.acting_surfaces();
         match statement {
             Statement::Conserved {
@@ -208,18 +221,46 @@ impl Equations<'_> {
                     along: Some(field),
                     ..Harmless::NOWHERE
                 };
-                let values = match model.is_first_order() {
-                    true => forces(model),
-                    false => {
-                        let kinematic = self.kinematic(model);
-                        [kinematic, vec![model.lagrangian.whole]].concat()
-                    }
-                };
-                self.among(model, &values, along)
+                self.of_symmetry(model, field, along)
                     .or_else(|| self.on_surfaces(model, &surfaces, along))
             }
             Statement::Involution(_) => None,
         }
+    }
+
+    /// A jump that leaves a symmetry open, as text.
+    fn of_symmetry(
+        &self,
+        model: &mut Model,
+        field: &[ExprId],
+        along: Harmless<'_>,
+    ) -> Option<String> {
+        if model.is_first_order() {
+            let rates = forces(model);
+            return self.among(model, &rates, along);
+        }
+        let whole = model.lagrangian.whole;
+        let values = [self.kinematic(model), vec![whole]].concat();
+        if let Some(jump) = self.among(model, &values, along) {
+            return Some(jump);
+        }
+        let positions: Vec<SymbolId> = model.coordinates.iter().map(|it| it.q).collect();
+        if !keeps_lagrangian(model, field, self.seed) {
+            let slopes: Vec<ExprId> = (positions.iter())
+                .map(|q| model.pool.diff(whole, *q))
+                .collect();
+            if let Some(jump) = self.among(model, &slopes, along) {
+                return Some(jump);
+            }
+        }
+        let time = model.time;
+        let slopes: Vec<ExprId> = (field.iter())
+            .flat_map(|component| positions.iter().chain([&time]).map(|by| (*component, *by)))
+            .map(|(component, by)| model.pool.diff(component, by))
+            .collect();
+        let mut places = (slopes.iter()).map(|slope| self.place(model, *slope, Harmless::NOWHERE));
+        let place = places.find_map(|place| place)?;
+        Some(format!("the derivatives of the field may jump {place}"))
     }
 
     /// A jump that leaves a stated density open, as text.
@@ -254,21 +295,38 @@ impl Equations<'_> {
         if let Some(place) = self.of_density(model, None) {
             return Some(place);
         }
+        // The growth of a volume may not even jump at certain times: the density is continuous along motions, and need
+        // not be able to follow.
+        let growth = self.growth(model);
+        let is_constrained = !model.constraints.is_empty();
+        self.among(model, &growth, Harmless::AT_THIN_SETS)
+            .or_else(|| {
+                let terms = is_constrained.then(|| self.terms(model))?;
+                self.among(model, &terms, Harmless::AT_TIMES)
+            })
+    }
+
+    /// The terms of the growth of volumes: slopes of the forces, and of what constraints add, by velocities; for a first-order
+    /// system the divergence.
+    fn growth(&self, model: &mut Model) -> Vec<ExprId> {
+        if let Some(rates) = model.field.clone() {
+            let positions = model.coordinates.iter().map(|it| it.q);
+            let pairs: Vec<(ExprId, SymbolId)> = rates.into_iter().zip(positions).collect();
+            let slopes = pairs
+                .into_iter()
+                .map(|(rate, by)| model.pool.diff(rate, by));
+            let slopes: Vec<ExprId> = slopes.collect();
+            return vec![model.pool.sum(&slopes)];
+        }
         let terms = match model.constraints.is_empty() {
-            true => {
-                let velocities: Vec<SymbolId> =
-                    model.coordinates.iter().map(|it| it.qdot).collect();
-                let slope = |force: ExprId| velocities.iter().map(move |by| (force, *by));
-                let slopes: Vec<(ExprId, SymbolId)> =
-                    forces(model).into_iter().flat_map(slope).collect();
-                let slopes = slopes
-                    .into_iter()
-                    .map(|(force, by)| model.pool.diff(force, by));
-                slopes.collect()
-            }
+            true => forces(model),
             false => self.terms(model),
         };
-        self.among(model, &terms, Harmless::AT_TIMES)
+        let velocities: Vec<SymbolId> = model.coordinates.iter().map(|it| it.qdot).collect();
+        let pairs = terms
+            .iter()
+            .flat_map(|term| velocities.iter().map(move |by| (*term, *by)));
+        pairs.map(|(term, by)| model.pool.diff(term, by)).collect()
     }
 
     /// A jump that leaves the conservation of these values open, as text.
@@ -377,6 +435,25 @@ impl Equations<'_> {
             harmless.allows(model, part)
         })
     }
+}
+
+/// The name of an input on which a claimed quantity depends, as `dot(x)` does where an input gives that rate.
+fn supplied(model: &mut Model, statement: &Statement) -> Option<String> {
+    let inputs: Vec<(String, SymbolId)> = (model.inputs())
+        .map(|(_, input)| (input.name.display.clone(), input.symbol))
+        .collect();
+    if inputs.is_empty() {
+        return None;
+    }
+    let values = written_out(model, &statement.expressions());
+    let mut pairs = inputs
+        .iter()
+        .flat_map(|input| values.iter().map(move |value| (input, *value)));
+    let found = pairs.find(|((_, symbol), value)| {
+        let slope = model.pool.diff(*value, *symbol);
+        model.pool.zero_test(slope) != Zero::Proved
+    });
+    found.map(|((name, _), _)| name.clone())
 }
 
 /// Expressions with energy, momenta and, for a first-order system, rates written out.

@@ -8,7 +8,7 @@ use super::defaults::{
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
-use super::finding::{self, ClosedForm, Finding, Verdict};
+use super::finding::{ClosedForm, Finding, Verdict};
 use super::global::Global;
 use super::hybrid::{self, Density, Effect, Surroundings};
 use super::invariant::Stated;
@@ -80,7 +80,7 @@ pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model
 /// Verdicts for a model with constraints that are nonlinear in the velocities. Only conserved quantities and forms are
 /// examined.
 fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim]) -> Vec<Finding> {
-    let seed = finding::seed_of(&model.snake_name);
+    let seed = model.pool.seed();
     let whole = Dynamics::of(model, derivation);
     let parts = whole.clone().on_branches(model, derivation);
     let parts = parts.unwrap_or_default();
@@ -211,7 +211,7 @@ impl<'e> Examiner<'e> {
     fn of(model: &'e mut Model, derivation: &'e Derivation, others: &'e [&'e Model]) -> Self {
         Self {
             others,
-            seed: finding::seed_of(&model.snake_name),
+            seed: model.pool.seed(),
             problem: Problem::of(model, derivation),
             dynamics: Dynamics::of(model, derivation),
             decision: None,

@@ -182,7 +182,7 @@ impl fmt::Display for Certificate {
         }
         let primes = match self.primes.as_slice() {
             [only] => format!("the prime {only}"),
-            [first, rest @ ..] => format!("{} primes from {first} on", rest.len() + 1),
+            [first, rest @ ..] => format!("{} primes, the least {first}", rest.len() + 1),
             [] => "no prime".to_owned(),
         };
         write!(
@@ -246,13 +246,6 @@ pub(crate) fn digits(value: f64) -> String {
     } else {
         format!("{value:.11e}")
     }
-}
-
-/// The seed of a model: the same for every build of it (FNV-1a of its name).
-pub(super) fn seed_of(name: &str) -> u64 {
-    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 #[cfg(test)]

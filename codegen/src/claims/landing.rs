@@ -10,7 +10,7 @@ use dalembert_expr::{ExprId, SymbolId};
 use super::collision::{Vanished, evidence_at_impact};
 use super::dynamics::Dynamics;
 use super::evidence::Wording;
-use super::finding::{Verdict, seed_of};
+use super::finding::Verdict;
 use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::{Model, Reset, Surface};
@@ -90,7 +90,7 @@ impl Landings<'_> {
             help: [help.to_owned(), String::new()],
             ..Wording::default()
         };
-        let seed = seed_of(&model.snake_name);
+        let seed = model.pool.seed();
         let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
         match found.verdict(true, wording, seed) {
             Verdict::Refuted(witness) => Some((witness.to_string(), witness.help)),
@@ -107,7 +107,7 @@ impl Landings<'_> {
             change: model.pool.sub(after, level),
             shown: format!("change of the level of {constraint}"),
         };
-        let seed = seed_of(&model.snake_name);
+        let seed = model.pool.seed();
         let found = evidence_at_impact(model, self.wall, self.dynamics, &question, seed);
         (!found.shows_that_it_vanishes()).then(|| {
             let text =

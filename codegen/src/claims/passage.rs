@@ -18,10 +18,10 @@ use dalembert_expr::{
 
 use super::dynamics::Number;
 use super::examine::explicit;
-use super::linear::{dot, solve};
+use super::linear::dot;
 use super::minors::{LARGEST, determinant};
 use super::refraction::refracted;
-use super::side::{Side, quantity_of_mode, velocities_of};
+use super::side::{AffineRow, Side, quantity_of_mode, velocities_of};
 use super::sliding::{Return, returns};
 use crate::mechanics::Derivation;
 use crate::model::Model;
@@ -52,9 +52,6 @@ pub(super) struct Passage {
     /// Reason for which the change of volumes is not known, if it is not known.
     pub(super) open: Option<Open>,
 }
-
-/// A row of a matrix with its affine part.
-type AffineRow<A> = (Vec<Series<A>>, Series<A>);
 
 /// The velocities after a passage.
 #[derive(Debug)]
@@ -332,7 +329,10 @@ impl Passage {
                 let forces = sides.iter().flat_map(|side| side.forces());
                 let metrics = sides.iter().flat_map(|side| of_metric(side));
                 let gap = self.gap.0.iter().copied().chain([self.gap.1]);
-                metrics.chain(forces).chain(gap).collect()
+                let forms = sides
+                    .iter()
+                    .flat_map(|side| side.forms.iter().flatten().copied());
+                metrics.chain(forces).chain(gap).chain(forms).collect()
             }
         }
     }
@@ -393,53 +393,28 @@ impl Passage {
         match &self.velocities {
             Velocities::Declared(velocities, _) => Some(given(velocities)),
             Velocities::Rates => Some(given(self.after.rates.as_ref()?)),
-            Velocities::Nearest => {
-                let shifted =
-                    |(row, shift): (Vec<_>, Vec<_>)| jets.add(&dot(jets, &row, velocity), &shift);
-                let projection = self.projection(jets, series)?;
-                Some(projection.into_iter().map(shifted).collect())
-            }
+            Velocities::Nearest => self.focused(jets, series, velocity),
             Velocities::Refracted => {
                 let sides = (&self.before, &self.after);
-                refracted(jets, point, series, sides, &self.gap, velocity)
+                let velocity = refracted(jets, point, series, sides, &self.gap, velocity)?;
+                self.focused(jets, series, &velocity)
             }
         }
     }
 
-    /// The projection on the constraints of the mode that is entered: rows of a matrix, each with its affine part.
-    fn projection<A: Arithmetic>(
+    /// The nearest velocities that satisfy the constraints of the mode that is entered.
+    fn focused<A: Arithmetic>(
         &self,
         jets: &Jets<'_, A>,
         series: &dyn Fn(ExprId) -> Series<A>,
-    ) -> Option<Vec<AffineRow<A>>> {
-        let rows = |rows: &[Vec<ExprId>]| -> Vec<Vec<Series<A>>> {
-            let row = |row: &Vec<ExprId>| row.iter().map(|id| series(*id)).collect();
-            rows.iter().map(row).collect()
-        };
-        let (metric, forms) = (rows(&self.after.metric), rows(&self.after.forms));
-        let n = metric.len();
-        let column = |i: usize| forms.iter().map(|form| form[i].clone()).collect();
-        // W^a, N rows of M.
-        let duals = solve(jets, metric, (0..n).map(column).collect())?.unknowns;
-        let mass = forms.iter().map(|form| {
-            let dual = |a: usize| duals.iter().map(|row| row[a].clone()).collect::<Vec<_>>();
-            (0..forms.len())
-                .map(|a| dot(jets, &form[..n], &dual(a)))
-                .collect()
-        });
-        // m_ab (eta^b | eta^b_0), M rows of N + 1.
-        let share = solve(jets, mass.collect(), forms.clone())?.unknowns;
-        let one = jets.constant(jets.field.integer(1));
-        let entry = |i: usize, j: usize| {
-            let terms = duals[i].iter().zip(&share);
-            let sum = jets.dot(terms.map(|(w, row)| (w.as_slice(), row[j].as_slice())));
-            match i == j {
-                true => jets.sub(&one, &sum),
-                false => jets.scale(jets.field.integer(-1), &sum),
-            }
-        };
-        let row = |i: usize| ((0..n).map(|j| entry(i, j)).collect(), entry(i, n));
-        Some((0..n).map(row).collect())
+        velocity: &[Series<A>],
+    ) -> Option<Vec<Series<A>>> {
+        if self.after.forms.is_empty() {
+            return Some(velocity.to_vec());
+        }
+        let shifted = |(row, shift): AffineRow<A>| jets.add(&dot(jets, &row, velocity), &shift);
+        let projection = self.after.projection(jets, series)?;
+        Some(projection.into_iter().map(shifted).collect())
     }
 
     /// The factor of `mu_C`; `None` at a singular point, or if the change is not known. Where the state stays, the sign
@@ -467,7 +442,9 @@ impl Passage {
             Velocities::Nearest => {
                 let space = JetSpace::new(0, 0, 1)?;
                 let jets = Jets::new(field, &space);
-                let rows = self.projection(&jets, &|id| jets.constant(values[id.index()]))?;
+                let rows = self
+                    .after
+                    .projection(&jets, &|id| jets.constant(values[id.index()]))?;
                 let row = |i: &usize| rows[*i].0.iter().map(|series| jets.value(series)).collect();
                 after.independent.iter().map(row).collect()
             }

@@ -4,7 +4,6 @@ use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 
 use super::contraction::{Dependence, ForceSlope, dependence};
 use super::dynamics::Dynamics;
-use super::finding::seed_of;
 use super::locus::Locus;
 use super::sample::Sample;
 use super::undecided::Undecided;
@@ -95,7 +94,7 @@ impl Problem {
         if !self.friction.as_ref().is_some_and(is_open) {
             return;
         }
-        let seed = seed_of(&model.snake_name);
+        let seed = model.pool.seed();
         let dynamics = Dynamics::of(model, derivation);
         let found = dependence(model, self, &dynamics, seed);
         // The derivatives at rest determine a linear force, if rest lies in D and the derivatives exist there.

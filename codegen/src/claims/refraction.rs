@@ -1,12 +1,14 @@
-//! The velocities after a transition between modes of different Lagrangians, without constraints.
+//! The velocities after a transition between modes of different Lagrangians, before they are focused on the constraints of
+//! the mode that is entered.
 //!
 //! ```text
-//! p+ = p + c dh                    v = g+^{-1}(p - A+),   k = dh(g+^{-1} dh),   b = dh(v) + d_t h
+//! p+ = p + c d                     v = g+^{-1}(p - A+),   k = d(g+^{-1} d),   b = d(v) + d_t h
 //! H+(p+) = H-(p) - c d_t h         c^2 k/2 + c b + E = 0,   E = H+(p) - H-(p),   b + k c = -sqrt(b^2 - 2 k E)
 //! ```
 //!
-//! Where the root is not real the motion is reflected by the elastic law. J. Cortes and A. M. Vinogradov (2006),
-//! Definition 4.14.
+//! `d = dh - eta^a m_ab dh(W^b)`, with `W = g^{-1} eta` and `m^ab = eta^a(W^b)`, is the part of `dh` that acts within the
+//! constraints of the mode that is left. Where the root is not real the motion is reflected by the elastic law. J. Cortes and
+//! A. M. Vinogradov (2006), Definition 4.14.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Jets, Rational, Series};
 
@@ -34,8 +36,8 @@ pub(super) fn refracted<P: ExpansionPoint>(
         let kinetic = jets.scale(half, &dot(jets, &lowered(side, velocity), velocity));
         jets.add(&kinetic, &series(side.potential))
     };
-    let slope = all(slope);
-    // The momenta before minus the linear terms after, and dh. The metric after raises the indices of both.
+    let slope = within(jets, series, before, all(slope))?;
+    // The momenta before minus the linear terms after, and d. The metric after raises the indices of both.
     let shifts = before.linear.iter().zip(&after.linear);
     let shifts = shifts.map(|(before, after)| jets.sub(&series(*before), &series(*after)));
     let momenta = lowered(before, velocity).into_iter().zip(shifts);
@@ -59,4 +61,24 @@ pub(super) fn refracted<P: ExpansionPoint>(
         jets.sub(start, &jets.mul(&c, along))
     };
     Some(start.iter().zip(&along).map(shifted).collect())
+}
+
+/// The part of a one-form that acts within the constraints of a mode.
+fn within<A: Arithmetic>(
+    jets: &Jets<'_, A>,
+    series: &dyn Fn(ExprId) -> Series<A>,
+    side: &Side,
+    form: Vec<Series<A>>,
+) -> Option<Vec<Series<A>>> {
+    if side.forms.is_empty() {
+        return Some(form);
+    }
+    let projection = side.projection(jets, series)?;
+    let column =
+        |j: usize| -> Vec<Series<A>> { projection.iter().map(|(row, _)| row[j].clone()).collect() };
+    Some(
+        (0..form.len())
+            .map(|j| dot(jets, &form, &column(j)))
+            .collect(),
+    )
 }

@@ -1,11 +1,11 @@
 //! One side of an impact: metric, constraints and rates of a mode, as expressions of the state before the impact.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, SymbolId};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, Series, SymbolId};
 
 use super::dynamics::Number;
 use super::examine::explicit;
 use super::frame::choose_dependent;
-use super::linear::{Matrix, solve};
+use super::linear::{Matrix, dot, solve};
 use super::minors::determinant;
 use crate::model::{Model, Statement};
 
@@ -36,6 +36,9 @@ pub(super) struct Chart<A: Arithmetic> {
     pub(super) density: A::Scalar,
 }
 
+/// A row of a matrix with its affine part.
+pub(super) type AffineRow<A> = (Vec<Series<A>>, Series<A>);
+
 impl Side {
     /// The mode of a model, with the density that its claims state.
     pub(super) fn of(model: &mut Model) -> Self {
@@ -53,6 +56,42 @@ impl Side {
             potential: model.lagrangian.potential,
             density: stated_density(model).map_or_else(|| model.pool.one(), |(density, _)| density),
         }
+    }
+
+    /// The projection on the constraints: rows of a matrix, each with its affine part.
+    pub(super) fn projection<A: Arithmetic>(
+        &self,
+        jets: &Jets<'_, A>,
+        series: &dyn Fn(ExprId) -> Series<A>,
+    ) -> Option<Vec<AffineRow<A>>> {
+        let rows = |rows: &[Vec<ExprId>]| -> Vec<Vec<Series<A>>> {
+            let row = |row: &Vec<ExprId>| row.iter().map(|id| series(*id)).collect();
+            rows.iter().map(row).collect()
+        };
+        let (metric, forms) = (rows(&self.metric), rows(&self.forms));
+        let n = metric.len();
+        let column = |i: usize| forms.iter().map(|form| form[i].clone()).collect();
+        // W^a, N rows of M.
+        let duals = solve(jets, metric, (0..n).map(column).collect())?.unknowns;
+        let mass = forms.iter().map(|form| {
+            let dual = |a: usize| duals.iter().map(|row| row[a].clone()).collect::<Vec<_>>();
+            (0..forms.len())
+                .map(|a| dot(jets, &form[..n], &dual(a)))
+                .collect()
+        });
+        // m_ab (eta^b | eta^b_0), M rows of N + 1.
+        let share = solve(jets, mass.collect(), forms.clone())?.unknowns;
+        let one = jets.constant(jets.field.integer(1));
+        let entry = |i: usize, j: usize| {
+            let terms = duals[i].iter().zip(&share);
+            let sum = jets.dot(terms.map(|(w, row)| (w.as_slice(), row[j].as_slice())));
+            match i == j {
+                true => jets.sub(&one, &sum),
+                false => jets.scale(jets.field.integer(-1), &sum),
+            }
+        };
+        let row = |i: usize| ((0..n).map(|j| entry(i, j)).collect(), entry(i, n));
+        Some((0..n).map(row).collect())
     }
 
     /// All expressions, in a fixed order.

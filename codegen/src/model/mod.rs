@@ -126,6 +126,21 @@ pub struct Name {
     pub member: Option<usize>,
 }
 
+impl Name {
+    /// The name of a coordinate's velocity: `theta_dot`, `theta_dot.3`.
+    pub fn velocity(&self) -> String {
+        match self.member {
+            Some(member) => format!("{}_dot.{member}", self.field),
+            None => format!("{}_dot", self.display),
+        }
+    }
+
+    /// The name of a coordinate's momentum: `p_theta`, `p_theta.3`.
+    pub fn momentum(&self) -> String {
+        format!("p_{}", self.display)
+    }
+}
+
 /// A coordinate with its velocity.
 #[derive(Debug, Clone)]
 pub struct Coordinate {

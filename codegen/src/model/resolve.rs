@@ -122,6 +122,7 @@ impl<'s> Resolver<'s> {
     /// A resolver without names. `steps` is the budget of its algebra.
     pub(super) fn new(spec: &'s Spec, steps: u64) -> Self {
         let mut pool = Pool::with_budget(steps);
+        pool.set_seed(spec.seed);
         let symbols = Symbols::new(&mut pool);
         Self {
             spec,

@@ -81,7 +81,7 @@ impl Writer<'_> {
         let velocities: Vec<String> = block
             .columns
             .iter()
-            .map(|&i| format!("{}_dot", self.model.coordinates[i].name.display))
+            .map(|&i| self.model.coordinates[i].name.velocity())
             .collect();
         let rows: Vec<String> = block.rows.iter().map(|&row| self.row_name(row)).collect();
         let how = match &block.solve {

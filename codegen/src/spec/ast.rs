@@ -27,6 +27,8 @@ pub struct Spec {
     pub documentation: Vec<String>,
     /// Text of the declaration.
     pub source: String,
+    /// Hash of the tokens of the declaration: the seed of the random points at which its expressions are compared.
+    pub seed: u64,
     /// `const N = 8;`
     pub constants: Vec<Constant>,
     /// `coordinates { .. }`
@@ -73,6 +75,7 @@ impl Spec {
             visibility: String::new(),
             documentation: Vec::new(),
             source: String::new(),
+            seed: 0,
             constants: Vec::new(),
             coordinates: Vec::new(),
             parameters: Vec::new(),
@@ -100,6 +103,7 @@ impl Spec {
             visibility: self.visibility.clone(),
             documentation: self.documentation.clone(),
             source: self.source.clone(),
+            seed: self.seed,
             ..Self::new(self.name.clone(), self.snake_name.clone())
         }
     }

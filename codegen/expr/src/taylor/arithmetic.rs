@@ -95,10 +95,11 @@ impl Arithmetic for Modulus {
     }
 
     fn settle(self, sum: u128) -> u64 {
-        self.reduce(sum)
+        self.reduce_wide(sum)
     }
 
     fn scatter(self, sums: &mut [u128], row: &[u32], factor: u64, terms: &[(u32, u64)]) {
+        let multiple = u128::from(self.prime()) << 66;
         let wide = u128::from(factor);
         let mut position = 0;
         while position < terms.len() {
@@ -107,13 +108,10 @@ impl Arithmetic for Modulus {
                 return;
             }
             let k = row[j as usize] as usize;
-            // Products stay below 2^122, so a sum below 2^127 has room for the next one.
+            // Products stay below 2^122, so a sum below 2^127 has room for the next one. The multiple of the prime is
+            // larger than 2^126.
             let sum = sums[k].wrapping_add(wide.wrapping_mul(b as u128));
-            sums[k] = if sum >> 127 == 0 {
-                sum
-            } else {
-                u128::from(self.reduce(sum))
-            };
+            sums[k] = if sum >> 127 == 0 { sum } else { sum - multiple };
             position += 1;
         }
     }

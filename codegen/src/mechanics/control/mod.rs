@@ -118,7 +118,28 @@ pub fn derive_extremals(model: &mut Model) -> Result<Extremals, Uncontrolled> {
         return Err(Uncontrolled::without_cost(model));
     };
     let system = system::of(model)?;
+    check_names(model, &system, cost.item)?;
     let principle = principle::derive(model, &system, cost)?;
     let jumps = jump::derive(model, &system, &principle)?;
     Ok(principle.extremals(&system, cost.terminal, jumps))
+}
+
+/// Refuses two columns of the same name in the tables of extremals: state, costate, cost so far, inputs, and `H*`.
+fn check_names(model: &Model, system: &system::System, cost: ItemId) -> Result<(), Uncontrolled> {
+    let costates = system.names.iter().map(|name| model::costate_name(name));
+    let mut names: Vec<String> = system.names.iter().cloned().chain(costates).collect();
+    names.extend(model.inputs().map(|(_, input)| input.name.display.clone()));
+    names.extend([model::COST, model::ENERGY].map(str::to_owned));
+    let again = names
+        .iter()
+        .enumerate()
+        .find(|(i, name)| names[..*i].contains(*name));
+    match again {
+        None => Ok(()),
+        Some((_, name)) => {
+            let text = format!("the tables of its extremals would have two columns `{name}`");
+            let help = "choose another name for the coordinate or the input";
+            Err(Uncontrolled::at(cost, text, help))
+        }
+    }
 }

@@ -16,7 +16,7 @@ pub const ENERGY: &str = "hamiltonian";
 pub const TERMINAL: &str = "terminal";
 
 /// Name of the component with the cost so far.
-const COST: &str = "cost";
+pub(super) const COST: &str = "cost";
 
 /// The first-order model of the extremals of `model`, whose pool holds their expressions. Its coordinates are the
 /// state, the costate and the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs,
@@ -103,13 +103,17 @@ impl Parts {
     }
 }
 
+/// The name of the costate of a component.
+pub(super) fn costate_name(component: &str) -> String {
+    format!("costate_{component}")
+}
+
 /// State, costate and cost so far.
 fn entries(model: &mut Model, extremals: &Extremals) -> Vec<Entry> {
     let components = extremals.components.iter();
     let states = components.clone().zip(topologies(model));
     let states = states.map(|(it, topology)| (it.name.clone(), it.state, topology));
-    let costates =
-        components.map(|it| (format!("costate_{}", it.name), it.costate, Topology::Line));
+    let costates = components.map(|it| (costate_name(&it.name), it.costate, Topology::Line));
     let mut entries: Vec<Entry> = states.chain(costates).collect();
     entries.push(cost(model));
     entries

@@ -109,13 +109,9 @@ fn of_lagrangian(model: &mut Model) -> Result<System, Uncontrolled> {
         });
     }
     let names = model.coordinates.iter().map(|it| it.name.display.clone());
-    let rates_of = model.coordinates.iter();
-    let rates_of = rates_of.map(|it| match it.name.display.split_once('.') {
-        Some((family, member)) => format!("{family}_dot.{member}"),
-        None => format!("{}_dot", it.name.display),
-    });
+    let velocities = model.coordinates.iter().map(|it| it.name.velocity());
     Ok(System {
-        names: names.chain(rates_of).collect(),
+        names: names.chain(velocities).collect(),
         inputs: inputs(model),
         states,
         rates,

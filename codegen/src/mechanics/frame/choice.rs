@@ -120,7 +120,7 @@ fn quasi_velocities(
             None => {
                 form[i] = model.pool.one();
                 chosen.push(Chosen {
-                    name: format!("{}_dot", model.coordinates[i].name.display),
+                    name: model.coordinates[i].name.velocity(),
                     coordinate: Some(i),
                     form,
                 });

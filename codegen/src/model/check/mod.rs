@@ -89,6 +89,7 @@ pub(in crate::model) fn check_mode(
     resolver.constants();
     resolver.all_coordinates();
     resolver.all_parameters();
+    resolver.check_columns();
     resolver.order_symbols();
     resolver.all_definitions();
     let lagrangian = lagrangian(&mut resolver);

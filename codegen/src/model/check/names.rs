@@ -81,6 +81,39 @@ impl Names {
 }
 
 impl Resolver<'_> {
+    /// Refuses a coordinate, a parameter or an input with the name that the velocity or the momentum of a coordinate has
+    /// in tables and flags.
+    pub(super) fn check_columns(&mut self) {
+        let coordinates = &self.symbols.coordinates;
+        let is_first_order = self.spec.field.is_some();
+        let meaning = |name: &str| {
+            coordinates.iter().find_map(|coordinate| {
+                let of = coordinate.name.display.as_str();
+                if coordinate.name.velocity() == name {
+                    Some(format!("the velocity of `{of}`"))
+                } else if !is_first_order && coordinate.name.momentum() == name {
+                    Some(format!("the momentum of `{of}`"))
+                } else {
+                    None
+                }
+            })
+        };
+        let named = coordinates.iter().map(|it| (&it.name.display, it.item));
+        let parameters = self.symbols.parameters.iter();
+        let mut named = named.chain(parameters.map(|it| (&it.name.display, it.item)));
+        let taken = named.find_map(|(name, item)| {
+            let text = format!(
+                "`{name}` is the name of {} in tables and flags",
+                meaning(name)?
+            );
+            Some((item, text))
+        });
+        if let Some((item, text)) = taken {
+            let at = self.spec.location(item);
+            self.refuse::<()>(at, text, "choose another name");
+        }
+    }
+
     /// The members of a declaration, each with a scope that holds the value of its index.
     pub(in crate::model) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
         self.members_within(declared, &Scope::default())

@@ -24,6 +24,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
         ));
     }
     let mut spec = Spec::new(name, snake_name);
+    spec.seed = source::hash(&spec.name.text, body);
     spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
     spec.documentation = documentation;
     spec.visibility = visibility;

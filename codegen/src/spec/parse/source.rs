@@ -44,6 +44,61 @@ pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body:
     text
 }
 
+/// A hash of the name and the tokens (FNV-1a). Blanks, comments and documentation do not count.
+pub(super) fn hash(name: &str, body: &Group) -> u64 {
+    let mut hash = Hash(0xcbf2_9ce4_8422_2325);
+    hash.add(name);
+    hash.add_tokens(body.stream());
+    hash.0
+}
+
+struct Hash(u64);
+
+impl Hash {
+    fn add(&mut self, text: &str) {
+        // A byte that no text contains separates the tokens.
+        for byte in text.bytes().chain([0xff]) {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn add_tokens(&mut self, tokens: TokenStream) {
+        let mut tokens = tokens.into_iter().peekable();
+        while let Some(token) = tokens.next() {
+            match &token {
+                TokenTree::Punct(sign) if sign.as_char() == '#' => {
+                    if tokens.next_if(is_documentation).is_none() {
+                        self.add("#");
+                    }
+                }
+                TokenTree::Group(group) => {
+                    let [open, close] = match group.delimiter() {
+                        Delimiter::Parenthesis => ["(", ")"],
+                        Delimiter::Brace => ["{", "}"],
+                        Delimiter::Bracket => ["[", "]"],
+                        Delimiter::None => ["", ""],
+                    };
+                    self.add(open);
+                    self.add_tokens(group.stream());
+                    self.add(close);
+                }
+                other => self.add(&other.to_string()),
+            }
+        }
+    }
+}
+
+/// True for `[doc = ".."]`.
+fn is_documentation(token: &TokenTree) -> bool {
+    match token {
+        TokenTree::Group(group) => {
+            let first = group.stream().into_iter().next();
+            matches!(first, Some(TokenTree::Ident(word)) if word == "doc")
+        }
+        _ => false,
+    }
+}
+
 /// The text of the braces and everything between them. Inside of a `macro_rules`, a span covers the macro instead of
 /// the model; the text is therefore used only if it has the same tokens.
 fn body_text(body: &Group) -> String {
