@@ -115,7 +115,7 @@ pub enum CliError {
         reason: String,
     },
     /// A run that the runtime refuses to start.
-    #[error("simulate: {0}")]
+    #[error("the run cannot start: {0}")]
     Start(String),
     /// Input that is not valid JSON or has the wrong structure.
     #[error("{place}: {reason}")]

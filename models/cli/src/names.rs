@@ -2,7 +2,7 @@
 
 use dalembert::describe::Description;
 use dalembert_driver::names;
-pub use dalembert_driver::names::{column, coordinates, momentum, surfaces, velocity};
+pub use dalembert_driver::names::{column, coordinates, momentum, outputs, surfaces, velocity};
 
 use crate::error::CliError;
 

@@ -60,12 +60,9 @@ pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, 
 pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--set", text, "NAME=VALUE,..")?;
     let parameters = &model.description().parameters;
-    let index = names::find(
-        "--set",
-        "parameter",
-        name,
-        parameters.iter().map(|parameter| parameter.name),
-    )?;
+    let accepted = parameters.iter().map(|parameter| parameter.name);
+    let index = names::find("--set", "parameter", name, accepted)
+        .map_err(|error| of_another_flag(model, "--set", text, error))?;
     let assumption = parameters[index].assumption;
     match scalar::parse(value) {
         Ok(number) if assumption.holds(number) => {
@@ -81,13 +78,37 @@ pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliErro
     }
 }
 
+/// The error for an unknown name in `NAME=VALUE`, or advice if another flag takes the name.
+fn of_another_flag(model: &dyn AnyModel, flag: &str, text: &str, unknown: CliError) -> CliError {
+    let Some((name, _)) = text.split_once('=') else {
+        return unknown;
+    };
+    let description = model.description();
+    let is = |accepted: &[&str]| {
+        let accepted = accepted.iter().copied();
+        names::find("", "", name.trim(), accepted).is_ok()
+    };
+    let parameters: Vec<&str> = description.parameters.iter().map(|it| it.name).collect();
+    let other = if Component::find(model, name.trim()).is_ok() {
+        "--initial"
+    } else if is(&parameters) {
+        "--set"
+    } else if is(model.inputs()) {
+        "--input"
+    } else {
+        return unknown;
+    };
+    CliError::value(flag, text, format!("{other} {text}"))
+}
+
 /// Sets an input to a constant value from `NAME=VALUE`.
 ///
 /// # Errors
 /// An unknown input, or a value that is not a number.
 pub fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--input", text, "NAME=VALUE,..")?;
-    let index = names::find("--input", "input", name, model.inputs().iter().copied())?;
+    let index = names::find("--input", "input", name, model.inputs().iter().copied())
+        .map_err(|error| of_another_flag(model, "--input", text, error))?;
     match scalar::parse(value) {
         Ok(number) if number.is_finite() => {
             let after = model.description().parameters.len();
@@ -212,9 +233,14 @@ fn apply_change(
 ) -> Result<(), CliError> {
     let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
     let found = Component::find(model, name);
-    let component = found.map_err(|unknown| CliError::Unknown {
-        place: "--initial".to_owned(),
-        unknown,
+    let component = found.map_err(|unknown| {
+        let place = "--initial".to_owned();
+        of_another_flag(
+            model,
+            "--initial",
+            change,
+            CliError::Unknown { place, unknown },
+        )
     })?;
     let number = scalar::parse(value)
         .map_err(|expected| CliError::value(format!("--initial {name}"), value, expected))?;

@@ -4,6 +4,8 @@ use std::fmt::{self, Write as _};
 
 use dalembert::describe::Description;
 
+use crate::ensemble::row::OUTPUT;
+
 /// A name that is not among the accepted ones.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unknown {
@@ -94,6 +96,23 @@ fn member(name: &str) -> String {
         _ => name.to_owned(),
     }
 }
+
+/// The columns of the outputs in tables of runs, in order: their names, or `out.NAME` for those with the name of another
+/// column.
+pub fn outputs(description: &Description) -> impl Iterator<Item = String> {
+    description.outputs.iter().map(|output| {
+        let is_taken = OTHER_COLUMNS.contains(output)
+            || coordinates(description)
+                .any(|coordinate| coordinate == *output || velocity(coordinate) == *output);
+        match is_taken {
+            true => format!("{OUTPUT}{output}"),
+            false => (*output).to_owned(),
+        }
+    })
+}
+
+/// Columns of tables of runs that belong to no quantity of the model's own.
+const OTHER_COLUMNS: [&str; 4] = ["t", "energy", "mode", "event"];
 
 /// The names of the coordinates, in order.
 pub fn coordinates(description: &Description) -> impl Iterator<Item = &'static str> + Clone {

@@ -11,6 +11,7 @@ use dalembert_driver::ensemble::{Members, Quantity};
 
 use super::vary;
 use crate::error::CliError;
+use crate::names;
 use crate::scalar;
 use crate::sink::is_stdout;
 
@@ -229,10 +230,11 @@ fn columns(
         let expected = format!("`{INPUT}{name}`, as other columns begin with `{INPUT}`");
         return Err(CliError::value(place, name, expected));
     }
+    let outputs: Vec<String> = names::outputs(description).collect();
     let ours = |name: &str| match is_ensemble {
         true => name.strip_prefix(INPUT).map(str::to_owned),
         false => {
-            let is_other = OTHERS.contains(&name) || description.outputs.contains(&name);
+            let is_other = OTHERS.contains(&name) || outputs.iter().any(|output| output == name);
             (is_quantity(name) || !is_other).then(|| name.to_owned())
         }
     };
