@@ -224,6 +224,31 @@ fn states_that_no_run_has_decide_nothing() {
     check(&newton, "not conserved under w: dot(x)", Proved);
 }
 
+/// States with other coefficients are refused.
+#[test]
+fn coefficients_of_laws_lie_between_0_and_1() {
+    for law in [
+        "newton(k)",
+        "restitution(k)",
+        "newton(1 - k)",
+        "newton(k*(2 - k))",
+        "restitution(sqrt(k))",
+    ] {
+        let plane = format!(
+            "coordinates {{ x; y; }} parameters {{ k = 1/2; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
+             impacts {{ w: x >= 0 => {law}; }}"
+        );
+        check(&plane, "energy under w: not increasing", Proved);
+    }
+    let moving =
+        "coordinates { x; } lagrangian = dot(x)^2/2; impacts { w: x >= t => newton(1/2); }";
+    check(
+        moving,
+        "energy under w: not increasing",
+        Refuted("the energy grows"),
+    );
+}
+
 /// `y = 0` is a motion, along which the root has no rate.
 #[test]
 fn where_a_root_has_no_rate_it_may_change() {

@@ -22,7 +22,6 @@ use super::finding::{Certificate, Verdict};
 use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
 use super::passage::Passage;
-use super::regularity::domain;
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
@@ -123,14 +122,8 @@ fn known(
             return certain("an elastic impact keeps it");
         }
         Law::Elastic => "an elastic impact keeps it, and a projection reduces it",
-        Law::Restitution(e) | Law::Newton(e) => {
-            let ranges = model
-                .pool
-                .enclose(&model.pool.reachable(&[e]), &domain(model, e));
-            let range = ranges[e.index()]?;
-            let is_contraction = -1.0 <= range.lo && range.hi <= 1.0;
-            is_contraction.then_some(CONTRACTED)?
-        }
+        // No state is made with a coefficient outside [0, 1].
+        Law::Restitution(_) | Law::Newton(_) => CONTRACTED,
         Law::NonholonomicPlastic | Law::ImpactPlastic | Law::TotallyPlastic => CONTRACTED,
         Law::Transition => {
             let passage = wall.passage.as_ref()?;
