@@ -231,7 +231,7 @@ fn new_writes_a_model_that_runs() {
     let again = run(&format!("new {name}.dal"));
     assert_eq!(again.exit, Exit::Refused);
     assert!(
-        again.errors.contains("wall_clock.dal: File exists"),
+        again.errors.contains("files are not overwritten"),
         "{}",
         again.errors
     );

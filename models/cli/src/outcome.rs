@@ -120,10 +120,37 @@ pub fn remarks_on_orbit(
             error.to_string(),
             Some("a coordinate with constant rate in place of the time"),
         ),
+        OrbitError::Section(SectionError::Undefined(undefined)) => {
+            (without_derivative(description, undefined), None)
+        }
         other => (other.to_string(), None),
     };
     let remedy = remedy.map(|text| ("try", text.to_owned()));
     [("reason", reason)].into_iter().chain(remedy).collect()
+}
+
+/// Why the motion has no derivative, with the name of the surface.
+fn without_derivative(description: &Description, undefined: &Undefined) -> String {
+    let text = undefined.to_string();
+    match surface_of(undefined).and_then(|(index, _)| {
+        let name = names::surfaces(description).nth(index)?;
+        Some((index, name))
+    }) {
+        Some((index, name)) => text.replacen(&format!("surface {index}"), &format!("`{name}`"), 1),
+        None => text,
+    }
+}
+
+/// The surface and the time of an event at which the run has no derivative.
+const fn surface_of(undefined: &Undefined) -> Option<(usize, f64)> {
+    match *undefined {
+        Undefined::Graze { t, surface }
+        | Undefined::Corner { t, surface }
+        | Undefined::Held { t, surface }
+        | Undefined::Unlawful { t, surface }
+        | Undefined::Refracted { t, surface } => Some((surface, t)),
+        _ => None,
+    }
 }
 
 /// The kind of a failed search for an orbit, and its details by name.
@@ -153,16 +180,12 @@ pub fn missed(description: &Description, error: &OrbitError) -> Told {
 
 /// Details of the event at which the run has no derivative: its surface and its time.
 fn place(description: &Description, undefined: &Undefined) -> Details {
-    match *undefined {
-        Undefined::Graze { t, surface }
-        | Undefined::Corner { t, surface }
-        | Undefined::Held { t, surface }
-        | Undefined::Unlawful { t, surface }
-        | Undefined::Refracted { t, surface } => {
+    match (surface_of(undefined), undefined) {
+        (Some((surface, t)), _) => {
             let name = names::surfaces(description).nth(surface);
             vec![("surface", name.into()), ("after", json::number(t))]
         }
-        Undefined::NotFinite { t } => vec![("after", json::number(t))],
+        (None, Undefined::NotFinite { t }) => vec![("after", json::number(*t))],
         _ => Vec::new(),
     }
 }

@@ -139,7 +139,7 @@ pub fn explanation(description: &Description, outcome: &Outcome) -> Option<Strin
             surface(index)
         ),
         Outcome::Squeezed { surface: index } => format!(
-            "`{}` and the other surfaces that hold the motion move against each other",
+            "`{}` and other surfaces close on each other, and leave no motion between them",
             surface(index)
         ),
         Outcome::Contact { surface: index } => format!(

@@ -1,7 +1,7 @@
 //! `new`: writes a commented declaration as a starting point, into a file or into a crate.
 
 use std::fs::OpenOptions;
-use std::io::Write;
+use std::io::{self, Write};
 
 use dalembert_codegen::spec::is_rust_keyword;
 
@@ -46,7 +46,13 @@ pub fn run(args: &NewArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> 
     };
     let mut options = OpenOptions::new();
     let file = options.write(true).create_new(true).open(&path);
-    let mut file = file.map_err(failed)?;
+    let mut file = file.map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists => {
+            let expected = "another name: files are not overwritten";
+            CliError::value("NAME", path.display().to_string(), expected)
+        }
+        _ => failed(source),
+    })?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     let shown = path.display();
     writeln!(

@@ -318,4 +318,33 @@ mod tests {
         let rows = "x\n".to_owned() + &"1\n".repeat(1001);
         refused(&mut rows.as_bytes(), "1000 rows");
     }
+
+    /// Tables of runs tell an output from another column of the same name.
+    #[test]
+    fn outputs_with_the_names_of_other_columns_are_skipped() {
+        let description = Description {
+            outputs: Held::Static(&["x", "x_dot", "event", "height"]),
+            ..POINT
+        };
+        let outputs: Vec<String> = names::outputs(&description).collect();
+        assert_eq!(outputs, ["out.x", "out.x_dot", "out.event", "height"]);
+        let table = format!(
+            "t,x,x_dot,energy,{},event\n0,1,2,3,4,5,6,7,\n",
+            outputs.join(",")
+        );
+        let limits = Limits {
+            row: 100_000,
+            members: 1000,
+        };
+        let members = parse(
+            "--from table.csv",
+            table.as_bytes(),
+            &description,
+            Start::default(),
+            limits,
+        );
+        let members = members.expect("members");
+        assert_eq!(members.names(), ["x", "x_dot"]);
+        assert_eq!(members.values(0), [1.0, 2.0]);
+    }
 }
