@@ -4,8 +4,8 @@
 use dalembert::Outcome;
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
-use dalembert_stability::course::Course;
-use dalembert_stability::text::{Text, set};
+use dalembert_stability::course::{Course, End};
+use dalembert_stability::text::{Model, Text, set};
 
 /// A body on a floor, and a press that reaches the floor at the time `sqrt(5)/2`. With a `tilt` it is a wedge, which drives the
 /// body out to `y = (t^2 - 5/4)/tilt`.
@@ -34,6 +34,18 @@ static BEAD: Text = Text::new(
     }",
 );
 
+/// A run with contact from positions and velocities. `step` is that of integrators with fixed steps.
+fn held(
+    integrator: Integrator,
+    model: &Model,
+    [q, qdot]: [&[f64]; 2],
+    until: f64,
+    step: f64,
+) -> End {
+    let course = Course::new(model, q, qdot, until).tol(1e-10).step(step);
+    course.resting().run(Setting::free(integrator))
+}
+
 #[test]
 fn a_press_that_meets_the_floor_ends_the_run() {
     let close = 1.25_f64.sqrt();
@@ -41,12 +53,7 @@ fn a_press_that_meets_the_floor_ends_the_run() {
         for &integrator in Integrator::every() {
             let mut press = PRESS.model();
             set(&mut press, "e", e);
-            let course = Course::new(&press, &[0.5, 0.0], &[0.0, 1.0], 3.0);
-            let end = course
-                .tol(1e-9)
-                .step(1e-2)
-                .resting()
-                .run(Setting::free(integrator));
+            let end = held(integrator, &press, [&[0.5, 0.0], &[0.0, 1.0]], 3.0, 1e-2);
             let name = integrator.name();
             assert!(
                 matches!(end.outcome, Outcome::Squeezed { .. }),
@@ -68,12 +75,7 @@ fn a_wedge_that_meets_the_floor_drives_the_body_out() {
     for &integrator in Integrator::every() {
         let mut press = PRESS.model();
         set(&mut press, "tilt", 0.5);
-        let course = Course::new(&press, &[0.5, 0.0], &[0.0, 0.0], 3.0);
-        let end = course
-            .tol(1e-9)
-            .step(1e-2)
-            .resting()
-            .run(Setting::free(integrator));
+        let end = held(integrator, &press, [&[0.5, 0.0], &[0.0, 0.0]], 3.0, 1e-2);
         let name = integrator.name();
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         let right = [0.0, 2.0 * (9.0 - 1.25), 0.0, 4.0 * 3.0];
@@ -92,12 +94,13 @@ fn a_wedge_that_meets_the_floor_drives_the_body_out() {
 fn a_bead_between_walls_that_meet_ends_the_run() {
     let bead = BEAD.model();
     for &integrator in Integrator::every() {
-        let course = Course::new(&bead, &[0.5, -0.75_f64.sqrt()], &[0.0; 2], 3.0);
-        let end = course
-            .tol(1e-9)
-            .step(1e-2)
-            .resting()
-            .run(Setting::free(integrator));
+        let end = held(
+            integrator,
+            &bead,
+            [&[0.5, -0.75_f64.sqrt()], &[0.0; 2]],
+            3.0,
+            1e-2,
+        );
         let name = integrator.name();
         assert!(
             matches!(end.outcome, Outcome::Squeezed { .. }),
@@ -140,12 +143,7 @@ fn impacts_without_end_lead_to_their_limit() {
         set(&mut model, "M", mass);
         set(&mut model, "e", e);
         for &integrator in Integrator::every() {
-            let course = Course::new(&model, &[0.0, 1.45], &[1.0, 0.0], 2.0);
-            let end = course
-                .tol(1e-10)
-                .step(1e-2)
-                .resting()
-                .run(Setting::free(integrator));
+            let end = held(integrator, &model, [&[0.0, 1.45], &[1.0, 0.0]], 2.0, 1e-2);
             let name = integrator.name();
             assert_eq!(end.outcome, Outcome::Done, "{name}, {mass}, {e}");
             assert!(
@@ -177,12 +175,7 @@ fn a_point_lies_in_a_groove() {
         set(&mut model, "b", b);
         for &integrator in Integrator::every() {
             for [x, y] in [[0.0, 0.0], [0.1, 1.0]] {
-                let course = Course::new(&model, &[x, y], &[0.0, 0.0], 60.0);
-                let end = course
-                    .tol(1e-9)
-                    .step(1e-2)
-                    .resting()
-                    .run(Setting::free(integrator));
+                let end = held(integrator, &model, [&[x, y], &[0.0, 0.0]], 60.0, 1e-2);
                 let name = integrator.name();
                 assert_eq!(end.outcome, Outcome::Done, "{name}, {b}, {y}");
                 let is_at_rest = end.q.iter().chain(&end.qdot).all(|it| it.abs() < 1e-12);
@@ -221,12 +214,7 @@ fn a_table_stands_on_four_legs() {
             set(&mut model, name, value);
         }
         for &integrator in Integrator::every() {
-            let course = Course::new(&model, &[0.0; 3], &[c, 0.0, 0.0], 6.0);
-            let end = course
-                .tol(1e-9)
-                .step(2e-2)
-                .resting()
-                .run(Setting::free(integrator));
+            let end = held(integrator, &model, [&[0.0; 3], &[c, 0.0, 0.0]], 6.0, 2e-2);
             let name = integrator.name();
             assert_eq!(end.outcome, Outcome::Done, "{name}, {c}, {p}");
             let right = [6.0 * c, 0.0, 0.0];
@@ -270,23 +258,13 @@ fn the_surfaces_that_push_hold_the_motion_in_any_order() {
         for k in [0.1, 0.01, 0.001] {
             let mut model = LIFTED.model();
             set(&mut model, "k", k);
-            let course = Course::new(&model, &[0.0; 2], &[0.0, 0.3], 1.5);
-            let end = course
-                .tol(1e-10)
-                .step(1e-2)
-                .resting()
-                .run(Setting::free(integrator));
+            let end = held(integrator, &model, [&[0.0; 2], &[0.0, 0.3]], 1.5, 1e-2);
             assert_eq!(end.outcome, Outcome::Done, "{name}, {k}");
             let right = 0.45 + k * 2.25;
             assert!((end.q[1] - right).abs() < 1e-9, "{name}: {:?}", end.q);
         }
         let model = RAMP.model();
-        let course = Course::new(&model, &[0.0; 2], &[1.0, 0.0], 1.5);
-        let end = course
-            .tol(1e-10)
-            .step(1e-3)
-            .resting()
-            .run(Setting::free(integrator));
+        let end = held(integrator, &model, [&[0.0; 2], &[1.0, 0.0]], 1.5, 1e-3);
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         assert!(
             (end.q[1] - end.q[0] * end.q[0] / 5.0).abs() < 1e-12 && end.q[0] > 1.0,
@@ -327,12 +305,7 @@ fn a_surface_that_is_met_without_a_rate_takes_over() {
         for v in [0.0, 0.3] {
             let mut model = TAKEN_OVER.model();
             set(&mut model, "v", v);
-            let course = Course::new(&model, &[0.0; 2], &[0.5, v], 2.0);
-            let end = course
-                .tol(1e-10)
-                .step(1e-2)
-                .resting()
-                .run(Setting::free(integrator));
+            let end = held(integrator, &model, [&[0.0; 2], &[0.5, v]], 2.0, 1e-2);
             assert_eq!(end.outcome, Outcome::Done, "{name}, {v}");
             let right = [1.0, 2.0 * v + 0.2, 0.5, v + 0.6];
             for (found, right) in end.q.iter().chain(&end.qdot).zip(right) {
@@ -345,12 +318,7 @@ fn a_surface_that_is_met_without_a_rate_takes_over() {
             }
         }
         let model = ROAD.model();
-        let course = Course::new(&model, &[-1.0, 0.0], &[1.0, 0.0], 1.5);
-        let end = course
-            .tol(1e-10)
-            .step(1e-3)
-            .resting()
-            .run(Setting::free(integrator));
+        let end = held(integrator, &model, [&[-1.0, 0.0], &[1.0, 0.0]], 1.5, 1e-3);
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         let [x, y] = [end.q[0], end.q[1]];
         assert!(

@@ -242,6 +242,20 @@ mod tests {
     ];
 
     #[test]
+    fn surfaces_without_a_derivative_are_named() {
+        let (t, surface) = (1.0, 0);
+        for undefined in [
+            Undefined::Graze { t, surface },
+            Undefined::Corner { t, surface },
+            Undefined::Held { t, surface },
+            Undefined::Unlawful { t, surface },
+            Undefined::Refracted { t, surface },
+        ] {
+            assert!(undefined.to_string().contains("surface 0"), "{undefined}");
+        }
+    }
+
+    #[test]
     fn every_end_before_the_end_has_a_remedy() {
         for outcome in OUTCOMES {
             assert!(remedy(&outcome, false).is_some(), "{}", outcome.kind());

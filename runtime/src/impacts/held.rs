@@ -270,14 +270,17 @@ impl<G: StateVector> Held<G> {
         }
         let (system, t, state) = (now.system, now.t, &*now.state);
         let rates = system.gap_rates(t, state)?;
-        let (q, mut qdot) = (system.position(state), system.velocity(t, state)?);
-        qdot.as_mut_slice().fill(0.0);
-        let own = system.gap_rates(t, &system.state_moved(state, t, &q, &qdot)?)?;
         for surface in self.iter() {
             let square = |rates: &G| rates.as_slice()[surface] * rates.as_slice()[surface];
             let of_motion = squared_rate(system, surface, (t, before))?
                 + squared_rate(system, surface, (t, state))?;
-            if square(&rates) <= MOVING * MOVING * (square(&own) + of_motion) {
+            if square(&rates) <= MOVING * MOVING * of_motion {
+                continue;
+            }
+            let (q, mut qdot) = (system.position(state), system.velocity(t, state)?);
+            qdot.as_mut_slice().fill(0.0);
+            let of_surfaces = system.gap_rates(t, &system.state_moved(state, t, &q, &qdot)?)?;
+            if square(&rates) <= MOVING * MOVING * (square(&of_surfaces) + of_motion) {
                 continue;
             }
             // The rounding of the time changes gap rates too.

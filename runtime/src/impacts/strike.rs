@@ -4,6 +4,7 @@ use core::ops::ControlFlow;
 
 use super::accumulation::{Bounce, Ends};
 use super::corner::Recurrence;
+use super::held::Held;
 use super::hits::Hits;
 use super::impulse::Impacts;
 use super::instantaneous::focused;
@@ -96,15 +97,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         quieten_held(&mut hits, self.resting.held(), &rates, now)?;
         let length = self.watch.length;
         quieten_balanced(&mut hits, self.resting.held(), &rates, length, now)?;
-        for surface in 0..hits.count() {
-            // If the motion presses into it from now on, it is held.
-            if self.watch.is_tangential_crossing(surface)
-                && self.may_rest(surface)
-                && !self.law_of(now.system, surface).is_map()
-            {
-                hits.set_done(surface);
-            }
-        }
+        self.pass_by_touched(&mut hits, now);
         let mut several = hits.approached(&rates) > 1;
         let mut verdict = self.verdict();
         let mut passages = Passages(0);
@@ -135,18 +128,15 @@ impl<Sys: Impacting> Impacts<Sys> {
             (rates, next) = self.impact(strike, now, observer)?;
             if is_map {
                 wave = Wave::none(&rates);
-                let changes = now.system.mode(now.state) != now.system.mode(&arrived);
-                match changes {
+                let enters = now.system.mode(now.state) != now.system.mode(&arrived);
+                match enters {
                     true => passages.count(surface)?,
                     false => hits.set_done(surface),
                 }
-                if changes || now.system.position(now.state) != now.system.position(&arrived) {
-                    self.watch.resize(&arrived, now.state);
-                    self.watch.relocate(&mut hits, &rates, now)?;
-                    self.resting.keep(&hits, now, observer)?;
-                    self.watch.hold(self.resting.held());
+                if enters || now.system.position(now.state) != now.system.position(&arrived) {
+                    self.land(&arrived, (&mut hits, &rates), now, observer)?;
                 }
-                if changes {
+                if enters {
                     self.watch.pass_by(&mut hits);
                     self.slide(surface, &mut hits, &rates, now, observer)?;
                 }
@@ -169,11 +159,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             if next == Next::Rest {
                 match self.reach_limit(&mut wave, surface, now)? {
                     Limit::Reached(still) => {
-                        rates = now.system.gap_rates(now.t, now.state)?;
-                        for surface in still.iter() {
-                            hits.set_still(surface, -rates.as_slice()[surface]);
-                        }
-                        self.watch.touch(&mut hits, &rates, now)?;
+                        rates = self.quieten_limit(&mut hits, &still, now)?;
                     }
                     Limit::Later => {}
                     Limit::Unknown => break,
@@ -182,6 +168,48 @@ impl<Sys: Impacting> Impacts<Sys> {
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
+    }
+
+    /// Marks surfaces that are met at gap rate 0 as settled, if they may hold the motion: if it presses into them from now on, they do.
+    fn pass_by_touched(&self, hits: &mut Hits<Sys::Gaps>, now: &Moment<'_, Sys>) {
+        for surface in 0..hits.count() {
+            if self.watch.is_tangential_crossing(surface)
+                && self.may_rest(surface)
+                && !self.law_of(now.system, surface).is_map()
+            {
+                hits.set_done(surface);
+            }
+        }
+    }
+
+    /// Finds the surfaces at hand where a reset or a transition has led.
+    fn land<O: Observer<Sys>>(
+        &mut self,
+        arrived: &Sys::State,
+        (hits, rates): (&mut Hits<Sys::Gaps>, &Sys::Gaps),
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        self.watch.resize(arrived, now.state);
+        self.watch.relocate(hits, rates, now)?;
+        self.resting.keep(hits, now, observer)?;
+        self.watch.hold(self.resting.held());
+        Ok(())
+    }
+
+    /// The gap rates in the limit of impacts on these surfaces, which are rounding errors for them.
+    fn quieten_limit(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        still: &Held<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Sys::Gaps, Outcome> {
+        let rates = now.system.gap_rates(now.t, now.state)?;
+        for surface in still.iter() {
+            hits.set_still(surface, -rates.as_slice()[surface]);
+        }
+        self.watch.touch(hits, &rates, now)?;
+        Ok(rates)
     }
 
     /// Begins to slide, if the mode just entered through a surface leads back at once and only the mode changed.

@@ -73,7 +73,7 @@ impl<G: StateVector> Wave<G> {
     }
 }
 
-/// What comes after an impact at which impacts do not end by themselves.
+/// Continuation of impacts at one time that do not end by themselves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Limit<G: StateVector> {
     /// The state is the limit; these surfaces are no longer approached.
