@@ -34,15 +34,15 @@ static BEAD: Text = Text::new(
     }",
 );
 
-/// A run with contact from positions and velocities. `step` is that of integrators with fixed steps.
+/// A run with contact from positions and velocities, with a tolerance or the length of fixed steps.
 fn held(
     integrator: Integrator,
     model: &Model,
     [q, qdot]: [&[f64]; 2],
     until: f64,
-    step: f64,
+    [tol, step]: [f64; 2],
 ) -> End {
-    let course = Course::new(model, q, qdot, until).tol(1e-10).step(step);
+    let course = Course::new(model, q, qdot, until).tol(tol).step(step);
     course.resting().run(Setting::free(integrator))
 }
 
@@ -53,7 +53,13 @@ fn a_press_that_meets_the_floor_ends_the_run() {
         for &integrator in Integrator::every() {
             let mut press = PRESS.model();
             set(&mut press, "e", e);
-            let end = held(integrator, &press, [&[0.5, 0.0], &[0.0, 1.0]], 3.0, 1e-2);
+            let end = held(
+                integrator,
+                &press,
+                [&[0.5, 0.0], &[0.0, 1.0]],
+                3.0,
+                [1e-9, 1e-2],
+            );
             let name = integrator.name();
             assert!(
                 matches!(end.outcome, Outcome::Squeezed { .. }),
@@ -75,7 +81,13 @@ fn a_wedge_that_meets_the_floor_drives_the_body_out() {
     for &integrator in Integrator::every() {
         let mut press = PRESS.model();
         set(&mut press, "tilt", 0.5);
-        let end = held(integrator, &press, [&[0.5, 0.0], &[0.0, 0.0]], 3.0, 1e-2);
+        let end = held(
+            integrator,
+            &press,
+            [&[0.5, 0.0], &[0.0, 0.0]],
+            3.0,
+            [1e-9, 1e-2],
+        );
         let name = integrator.name();
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         let right = [0.0, 2.0 * (9.0 - 1.25), 0.0, 4.0 * 3.0];
@@ -99,7 +111,7 @@ fn a_bead_between_walls_that_meet_ends_the_run() {
             &bead,
             [&[0.5, -0.75_f64.sqrt()], &[0.0; 2]],
             3.0,
-            1e-2,
+            [1e-9, 1e-2],
         );
         let name = integrator.name();
         assert!(
@@ -143,7 +155,13 @@ fn impacts_without_end_lead_to_their_limit() {
         set(&mut model, "M", mass);
         set(&mut model, "e", e);
         for &integrator in Integrator::every() {
-            let end = held(integrator, &model, [&[0.0, 1.45], &[1.0, 0.0]], 2.0, 1e-2);
+            let end = held(
+                integrator,
+                &model,
+                [&[0.0, 1.45], &[1.0, 0.0]],
+                2.0,
+                [1e-10, 1e-2],
+            );
             let name = integrator.name();
             assert_eq!(end.outcome, Outcome::Done, "{name}, {mass}, {e}");
             assert!(
@@ -175,7 +193,13 @@ fn a_point_lies_in_a_groove() {
         set(&mut model, "b", b);
         for &integrator in Integrator::every() {
             for [x, y] in [[0.0, 0.0], [0.1, 1.0]] {
-                let end = held(integrator, &model, [&[x, y], &[0.0, 0.0]], 60.0, 1e-2);
+                let end = held(
+                    integrator,
+                    &model,
+                    [&[x, y], &[0.0, 0.0]],
+                    60.0,
+                    [1e-9, 1e-2],
+                );
                 let name = integrator.name();
                 assert_eq!(end.outcome, Outcome::Done, "{name}, {b}, {y}");
                 let is_at_rest = end.q.iter().chain(&end.qdot).all(|it| it.abs() < 1e-12);
@@ -214,7 +238,13 @@ fn a_table_stands_on_four_legs() {
             set(&mut model, name, value);
         }
         for &integrator in Integrator::every() {
-            let end = held(integrator, &model, [&[0.0; 3], &[c, 0.0, 0.0]], 6.0, 2e-2);
+            let end = held(
+                integrator,
+                &model,
+                [&[0.0; 3], &[c, 0.0, 0.0]],
+                6.0,
+                [1e-9, 2e-2],
+            );
             let name = integrator.name();
             assert_eq!(end.outcome, Outcome::Done, "{name}, {c}, {p}");
             let right = [6.0 * c, 0.0, 0.0];
@@ -258,13 +288,25 @@ fn the_surfaces_that_push_hold_the_motion_in_any_order() {
         for k in [0.1, 0.01, 0.001] {
             let mut model = LIFTED.model();
             set(&mut model, "k", k);
-            let end = held(integrator, &model, [&[0.0; 2], &[0.0, 0.3]], 1.5, 1e-2);
+            let end = held(
+                integrator,
+                &model,
+                [&[0.0; 2], &[0.0, 0.3]],
+                1.5,
+                [1e-10, 1e-2],
+            );
             assert_eq!(end.outcome, Outcome::Done, "{name}, {k}");
             let right = 0.45 + k * 2.25;
             assert!((end.q[1] - right).abs() < 1e-9, "{name}: {:?}", end.q);
         }
         let model = RAMP.model();
-        let end = held(integrator, &model, [&[0.0; 2], &[1.0, 0.0]], 1.5, 1e-3);
+        let end = held(
+            integrator,
+            &model,
+            [&[0.0; 2], &[1.0, 0.0]],
+            1.5,
+            [1e-10, 1e-3],
+        );
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         assert!(
             (end.q[1] - end.q[0] * end.q[0] / 5.0).abs() < 1e-12 && end.q[0] > 1.0,
@@ -305,7 +347,13 @@ fn a_surface_that_is_met_without_a_rate_takes_over() {
         for v in [0.0, 0.3] {
             let mut model = TAKEN_OVER.model();
             set(&mut model, "v", v);
-            let end = held(integrator, &model, [&[0.0; 2], &[0.5, v]], 2.0, 1e-2);
+            let end = held(
+                integrator,
+                &model,
+                [&[0.0; 2], &[0.5, v]],
+                2.0,
+                [1e-10, 1e-2],
+            );
             assert_eq!(end.outcome, Outcome::Done, "{name}, {v}");
             let right = [1.0, 2.0 * v + 0.2, 0.5, v + 0.6];
             for (found, right) in end.q.iter().chain(&end.qdot).zip(right) {
@@ -318,7 +366,13 @@ fn a_surface_that_is_met_without_a_rate_takes_over() {
             }
         }
         let model = ROAD.model();
-        let end = held(integrator, &model, [&[-1.0, 0.0], &[1.0, 0.0]], 1.5, 1e-3);
+        let end = held(
+            integrator,
+            &model,
+            [&[-1.0, 0.0], &[1.0, 0.0]],
+            1.5,
+            [1e-10, 1e-3],
+        );
         assert_eq!(end.outcome, Outcome::Done, "{name}");
         let [x, y] = [end.q[0], end.q[1]];
         assert!(

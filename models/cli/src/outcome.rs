@@ -136,7 +136,9 @@ fn without_derivative(description: &Description, undefined: &Undefined) -> Strin
         let name = names::surfaces(description).nth(index)?;
         Some((index, name))
     }) {
-        Some((index, name)) => text.replacen(&format!("surface {index}"), &format!("`{name}`"), 1),
+        Some((index, name)) => ["surface", "transition"].iter().fold(text, |text, noun| {
+            text.replacen(&format!("{noun} {index}"), &format!("`{name}`"), 1)
+        }),
         None => text,
     }
 }
@@ -251,7 +253,9 @@ mod tests {
             Undefined::Unlawful { t, surface },
             Undefined::Refracted { t, surface },
         ] {
-            assert!(undefined.to_string().contains("surface 0"), "{undefined}");
+            let text = undefined.to_string();
+            let is_numbered = text.contains("surface 0") || text.contains("transition 0");
+            assert!(is_numbered, "{text}");
         }
     }
 
