@@ -1516,8 +1516,10 @@ def hull_ranks(model, state):
             return [Decimal(0), *(item - other for item, other in zip(ends, base[1:]))]
         return field
     start = drift(state)
-    depends_on_time = not is_small(sum(abs(item) for item in model.derivative(drift, state, model.along(state, 1))), 1, 20)
     generators = [generator(k) for k in range(count)]
+    with_time = model.along(state, 1)
+    changes = [sum(abs(item) for item in model.derivative(field, state, with_time)) for field in [drift, *generators]]
+    depends_on_time = not all(is_small(change, 1, 20) for change in changes)
     if depends_on_time or not is_small(sum(abs(item) for item in start[1:]), 0, 20):
         generators.append(drift if depends_on_time else (lambda s: [Decimal(0), *drift(s)[1:]]))
 

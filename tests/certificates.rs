@@ -333,6 +333,12 @@ const LEAVES: &str = "
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         constraints { speed: dot(x)^2 + dot(y)^2 = 4; }
         claims { symplectic; }
+    }
+    pub Breathing {
+        coordinates { z; x; }
+        lagrangian = (2 + cos(t))*dot(z)^2/2 + dot(x)^2/2;
+        forces { drag: -dot(z)*dot(z)*d(z); }
+        claims { density: none; }
     }";
 
 /// Creates a folder for certificates.
@@ -409,6 +415,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "leaves:wider",
         "leaves:speed",
         "leaves:free",
+        "leaves:breathing",
     ];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|name| certificate(name, &folder)).collect();

@@ -157,7 +157,7 @@ fn densities_depend_on_what_roots_and_absolute_values_are_in_real_numbers() {
 
 #[test]
 fn of_a_model_without_states_nothing_is_proved() {
-    let none = Undecided("no real state was found");
+    let none = Undecided("at none of the real states");
     let plane = |lagrangian: &str| format!("coordinates {{ x; y; }} lagrangian = {lagrangian};");
     for lagrangian in [
         "(sqrt(x - 1 - x^2)*dot(x)^2 + dot(y)^2)/2",

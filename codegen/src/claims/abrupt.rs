@@ -21,6 +21,9 @@
 //! - A symmetry stays open if its flow crosses a jump, or a kink of a Lagrangian that it does not keep: on each side the
 //!   Lagrangian gains the derivative of a function, and both functions need not fit. It also stays open if the derivatives of
 //!   the field jump, because then so do the velocities that its flow gives.
+//! - A density that is infinite somewhere stays open if volumes shrink there at an infinite rate: `dot(x) = -sqrt(x)` with the
+//!   density `1/sqrt(x)`. Where the divergence of the rates is finite, a motion reaches no infinite density, because its logarithm
+//!   changes at a finite rate. Elsewhere it may, and motions may stay there. The same holds for forms.
 //! - An input may jump at any time. A claim about a quantity that depends on it, such as `dot(x)` where it gives that rate,
 //!   stays open.
 //! - A claim about a surface whose gap jumps stays open: the motion meets a face that the gap does not describe.
@@ -29,7 +32,7 @@ use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
 use super::barriers::is_avoided;
 use super::conserved::{is_constant, jump_unless};
-use super::continuity::{is_smooth, may_bend};
+use super::continuity::{WithLogarithms, has_gaps, infinite_slopes, is_smooth, may_bend, poles};
 use super::definite::is_regular;
 use super::density::factors;
 use super::dynamics::Dynamics;
@@ -212,9 +215,11 @@ impl Equations<'_> {
             }
             Statement::Invariant(_) => {
                 let terms = self.terms(model);
+                let coefficients = written_out(model, &statement.expressions());
                 self.on_states(model, Harmless::AT_THIN_SETS)
                     .or_else(|| self.among(model, &terms, Harmless::AT_TIMES))
                     .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
+                    .or_else(|| self.collapse(model, &coefficients, &terms))
             }
             Statement::Symmetry(field) => {
                 let along = Harmless {
@@ -267,10 +272,8 @@ impl Equations<'_> {
     fn of_density(&self, model: &mut Model, value: Option<ExprId>) -> Option<String> {
         let forces = forces(model);
         let values: Vec<ExprId> = value.into_iter().collect();
-        let values = written_out(model, &values);
-        let values = values
-            .into_iter()
-            .flat_map(|value| factors(&model.pool, value));
+        let whole = written_out(model, &values);
+        let values = (whole.iter()).flat_map(|value| factors(&model.pool, *value));
         let values: Vec<ExprId> = values.collect();
         // Where a density of mechanics jumps by itself was tested with its balance.
         if model.is_first_order()
@@ -287,6 +290,44 @@ impl Equations<'_> {
         };
         self.on_states(model, Harmless::AT_THIN_SETS)
             .or_else(|| self.among(model, &forces, harmless))
+            .or_else(|| {
+                let terms = match model.constraints.is_empty() {
+                    true => forces,
+                    false => self.terms(model),
+                };
+                self.collapse(model, &whole, &terms)
+            })
+    }
+
+    /// A place where a density or the coefficients of a form are infinite, if motions may reach it, as text. `terms` are
+    /// those of the equations of motion whose derivatives give the rates of these values.
+    fn collapse(&self, model: &mut Model, values: &[ExprId], terms: &[ExprId]) -> Option<String> {
+        let parts = model.pool.reachable(values);
+        let infinite = poles(&mut model.pool, &parts, WithLogarithms(true));
+        let infinite = self.possible_zeros(model, infinite);
+        let place = *infinite.first()?;
+        let parts = model.pool.reachable(terms);
+        let mut unbounded = poles(&mut model.pool, &parts, WithLogarithms(true));
+        unbounded.extend(infinite_slopes(&mut model.pool, &parts));
+        if self.possible_zeros(model, unbounded).is_empty() {
+            return None;
+        }
+        let text = model.pool.text(place);
+        Some(format!(
+            "motions may reach states where `{text}` is 0 and stay there"
+        ))
+    }
+
+    /// Those of the expressions that may be 0 in some state, and along a motion.
+    fn possible_zeros(&self, model: &mut Model, expressions: Vec<ExprId>) -> Vec<ExprId> {
+        let coordinates = model.coordinates.iter();
+        let states: Vec<SymbolId> = coordinates.flat_map(|it| [it.q, it.qdot]).collect();
+        let may_be_zero = |id: &ExprId| {
+            model.pool.depends_on_any(*id, &states)
+                && (!model.pool.sign(*id).is_nonzero() || has_gaps(model, *id))
+                && !is_constant(model, self.dynamics, *id, self.seed)
+        };
+        expressions.into_iter().filter(may_be_zero).collect()
     }
 
     /// A jump that leaves a density that is looked for open, as text: it need not be continuous where the derivatives of its logarithm

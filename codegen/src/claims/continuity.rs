@@ -199,7 +199,7 @@ fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
 }
 
 /// Functions at whose zeros a root or an inverse function has an infinite slope.
-fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
+pub(super) fn infinite_slopes(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
     let mut found = Vec::new();
     for id in parts {
         match pool.node(*id).clone() {
@@ -237,10 +237,10 @@ fn is_sum_of_squares(pool: &Pool, id: ExprId) -> bool {
 }
 
 /// True if arguments of logarithms count as denominators.
-struct WithLogarithms(bool);
+pub(super) struct WithLogarithms(pub(super) bool);
 
 /// Denominators and tangents, and arguments of logarithms.
-fn poles(
+pub(super) fn poles(
     pool: &mut Pool,
     parts: &[ExprId],
     WithLogarithms(has_logarithms): WithLogarithms,

@@ -6,7 +6,8 @@
 //! comes back arbitrarily near to its start (Theorem VII.21). The levels are compact where surfaces bound all
 //! coordinates that are not angles, the metric is positive and the potential finite, all of them everywhere. A Lagrangian
 //! that may be infinite somewhere, such as `dot(x)^2/(x - 1/2)^2`, has no such consequence: its levels and their volumes may
-//! be infinite. A metric that may vanish, such as `(1 + cos(x))*dot(x)^2`, has none either: all motions may end there.
+//! be infinite. A surface with a condition has none: where the condition begins to hold, motion may be behind the surface,
+//! and ends. A metric that may vanish, such as `(1 + cos(x))*dot(x)^2`, has none either: all motions may end there.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
@@ -39,7 +40,9 @@ pub(super) fn corollaries(
         return found;
     };
     let metric = model.lagrangian.metric.clone();
-    if model.pool.is_finite(model.lagrangian.whole)
+    let is_conditional = model.surfaces.iter().any(|it| !it.conditions.is_empty());
+    if !is_conditional
+        && model.pool.is_finite(model.lagrangian.whole)
         && exists_everywhere(model, around)
         && is_regular(model, &metric)
         && is_autonomous(model, around)

@@ -128,11 +128,24 @@ fn check_surface(
         let gap = derived.gap;
         model.pool.derivative_along(gap, &directions)
     })];
-    for (name, value) in (derived.margins.iter().map(|margin| ("condition", *margin)))
-        .chain(coefficient.map(|value| ("coefficient", value)))
-    {
+    let margins = derived.margins.clone();
+    if let Some(value) = coefficient {
         let change = model.pool.derivative_along(value, &directions);
-        changes.push((format!("rate of a {name} along its flow"), change));
+        changes.push(("rate of a coefficient along its flow".to_owned(), change));
+    }
+    for margin in margins {
+        let change = model.pool.derivative_along(margin, &directions);
+        // The flow need not keep a condition `c > 0` where it does not change: `X(c) = f c` keeps its sign.
+        if model.pool.zero_test(change) == Zero::Proved || is_multiple(model, change, margin) {
+            continue;
+        }
+        // Otherwise only a change at `c = 0` shows something.
+        if !model.pool.sign(change).is_nonzero() {
+            return Err(format!(
+                "{place}: not shown; its flow may change whether a condition holds"
+            ));
+        }
+        changes.push(("rate of a condition along its flow".to_owned(), change));
     }
     if let Some(passage) = &wall.passage {
         changes.extend(of_passage(
@@ -164,6 +177,20 @@ fn check_surface(
         expect(&place, found.verdict(true, wording, around.seed))?;
     }
     Ok(())
+}
+
+/// True if one expression is shown to be a finite multiple of another one: the ratio of their derivatives.
+fn is_multiple(model: &mut Model, one: ExprId, other: ExprId) -> bool {
+    let positions = model.coordinates.iter().map(|it| it.q);
+    let symbols: Vec<SymbolId> = positions.chain([model.time]).collect();
+    symbols.into_iter().any(|by| {
+        let slopes = [one, other].map(|value| model.pool.diff(value, by));
+        let ratio = model.pool.div(slopes[0], slopes[1]);
+        let ratio = model.pool.simplify(ratio);
+        let multiple = model.pool.mul(ratio, other);
+        let difference = model.pool.sub(one, multiple);
+        model.pool.is_finite(ratio) && model.pool.zero_test(difference) == Zero::Proved
+    })
 }
 
 /// Checks that the flow preserves the constraints of the model together with the instantaneous ones of a surface, as in

@@ -30,7 +30,13 @@ pub(super) fn check_conserved_under(
         vanishes: format!("`{written}` is the same before and after an impact at `{name}`"),
         differs: format!("`{written}` changes in an impact at `{name}`"),
         help: [
-            format!("write `not conserved under {name}: {written};`"),
+            match written {
+                "energy" => format!(
+                    "write `not conserved under {name}: energy;`, or `energy under {name}: not increasing;` for an \
+                     impact that only takes energy"
+                ),
+                _ => format!("write `not conserved under {name}: {written};`"),
+            },
             format!("write `conserved under {name}: {written};`"),
         ],
     };

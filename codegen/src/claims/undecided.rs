@@ -8,9 +8,9 @@ pub(super) const LARGEST_CHANCE: f64 = 1e-12;
 /// Reason for which there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Undecided {
-    /// No point was found where metric, constraints and all expressions are regular.
+    /// At no point that was tried are metric, constraints and all expressions regular.
     Degenerate,
-    /// No real state was found at which the equations of motion have values: without states, any claim would hold.
+    /// At no real state that was tried do the equations of motion have values: without states, any claim would hold.
     Stateless,
     /// The constraints are not linear in the velocities.
     Nonlinear,
@@ -36,11 +36,11 @@ impl fmt::Display for Undecided {
         match self {
             Self::Degenerate => write!(
                 f,
-                "no point was found where the metric, the constraints and all expressions are regular"
+                "at none of the points that were tried are the metric, the constraints and all expressions regular"
             ),
             Self::Stateless => write!(
                 f,
-                "no real state was found at which metric, forces and constraints have values"
+                "at none of the real states that were tried do metric, forces and constraints all have values"
             ),
             Self::Nonlinear => write!(
                 f,

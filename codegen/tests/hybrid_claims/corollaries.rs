@@ -62,6 +62,11 @@ fn unbounded_motion_is_not_reported_as_recurrent() {
         KEPT,
         [true, false],
     );
+    // Where the condition begins to hold, motion may be behind the surface, and ends.
+    for condition in ["y > 1/2", "sin(t) > 0"] {
+        let middle = format!("{BOX} middle: x >= 1/2 when {condition};");
+        check(&particle(&middle), KEPT, [true, false]);
+    }
     check(&disk(""), KEPT, [false, false]);
     // `1/sin(phi)` goes to minus infinity.
     let pole = "Pole { coordinates { x; phi: angle; } lagrangian = (dot(x)^2 + dot(phi)^2)/2;

@@ -89,6 +89,19 @@ fn coefficients_and_conditions_of_surfaces_are_kept() {
         "partial(x)",
         &["surface `floor`", "rate of a condition along its flow = 1"],
     );
+    // A flow that moves states, but not across the condition.
+    let line = |margin: &str| {
+        format!(
+            "Line {{ coordinates {{ x; y; }} field {{ dot(x) = 1; dot(y) = 0; }}
+                impacts {{ wall: x <= 1 when {margin} > 0 => reset {{ x = 0; }}; }} }}"
+        )
+    };
+    accept(&line("y"), "y*partial(y)");
+    refuse(
+        &line("y - y^2"),
+        "y*partial(y)",
+        &["surface `wall`", "may change whether a condition holds"],
+    );
 }
 
 #[test]
