@@ -1,6 +1,7 @@
 //! First-order systems: `field` in place of a Lagrangian.
 
 use dalembert::{Described, Fault, Impacting, Outcome, StateVector, System, VectorField};
+use dalembert_cli::suite::Setting;
 use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::compile;
 use dalembert_codegen::program::{Form, Function, Input, interpret::interpret};
@@ -282,4 +283,22 @@ fn states_of_the_command_line_are_positions() {
         exit == Exit::Refused && errors.contains("unknown key `qdot`"),
         "{errors}"
     );
+}
+
+/// A motion reaches `x = 0`, where its rate has an infinite slope, at `t = 1`.
+#[test]
+fn a_motion_to_an_infinite_slope_ends_soon() {
+    static SINK: Text =
+        Text::new("Sink { coordinates { x; } field { dot(x) = -sqrt(abs(x) + x); } }");
+    let sink = SINK.model();
+    for &integrator in Integrator::every().iter().filter(|it| !is_discrete(**it)) {
+        let course = Course::new(&sink, &[0.5], &[0.0], 5.0)
+            .tol(1e-10)
+            .step(1e-2);
+        let end = course.run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), end.outcome);
+        let evaluations = end.counters.rate_evaluations;
+        assert!(evaluations < 1_000_000, "{case} after {evaluations}");
+        assert!(end.q[0].abs() < 1e-6, "{case}: {}", end.q[0]);
+    }
 }

@@ -4,7 +4,7 @@ use dalembert::Outcome;
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::Setting;
 use dalembert_stability::course::Course;
-use dalembert_stability::text::Text;
+use dalembert_stability::text::{Model, Text, set};
 
 static FALLING_ROAD: Text = Text::new(
     "/// A point on a level road that goes on downhill from `x = 1`.
@@ -401,5 +401,79 @@ fn a_kink_on_a_round_surface_hides_no_impact() {
             errors.iter().all(|error| error.abs() < 1e-12),
             "{case}: {errors:?}"
         );
+    }
+}
+
+/// A point in balance on a floor, and a force that presses from the time `c` on, or a floor that rises from then on.
+#[test]
+fn a_point_in_balance_on_a_floor_stays_on_it_from_a_kink_on() {
+    static PRESSED: Text = Text::new(
+        "Pressed {
+            coordinates { x; }
+            parameters { c = 1; k = 1; e in [0, 1] = 1; }
+            lagrangian = dot(x)^2/2;
+            forces { press: -k*(abs(t - c) + t - c)*d(x); }
+            impacts { floor: x >= 0 => newton(e); }
+        }",
+    );
+    static LIFTED: Text = Text::new(
+        "Lifted {
+            coordinates { x; }
+            parameters { k = 0; e in [0, 1] = 1; }
+            let s = (abs(t - 1) + t - 1)/2;
+            lagrangian = dot(x)^2/2 - k*x;
+            impacts { floor: x >= s^2*(1 - k + k*s) => newton(e); }
+        }",
+    );
+    for &integrator in Integrator::every() {
+        for e in [0.5, 1.0] {
+            let end = |mut model: Model, values: [(&str, f64); 2]| {
+                for (name, value) in values.into_iter().chain([("e", e)]) {
+                    set(&mut model, name, value);
+                }
+                let course = Course::new(&model, &[0.0], &[0.0], 3.0).tol(1e-10);
+                let end = course.step(1e-2).resting().run(Setting::free(integrator));
+                let case = format!("{}, e = {e}: {:?}", integrator.name(), end.outcome);
+                assert_eq!(end.outcome, Outcome::Done, "{case}");
+                assert_eq!(end.counters.impacts, 0, "{case}");
+                ([end.q[0], end.qdot[0]], case)
+            };
+            for values in [(1.0, 1.0), (0.7, 1.0), (2.0, 100.0)] {
+                let (state, case) = end(PRESSED.model(), [("c", values.0), ("k", values.1)]);
+                assert_eq!(state, [0.0; 2], "{case}");
+            }
+            for (k, [x, v]) in [(0.0, [4.0; 2]), (1.0, [8.0, 12.0])] {
+                let (state, case) = end(LIFTED.model(), [("k", k), ("e", e)]);
+                let errors = [state[0] - x, state[1] - v];
+                assert!(
+                    errors.iter().all(|error| error.abs() < 1e-9),
+                    "{case}: {state:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Forces that are rounding errors before a kink, in front of which the point is in balance.
+#[test]
+fn rounding_of_a_force_in_balance_holds_nothing() {
+    static NOISE: Text = Text::new(
+        "Noise {
+            coordinates { x; }
+            parameters { c = 1/2; b = 4/5; }
+            lagrangian = dot(x)^2/2;
+            forces { f: (-10*((sqrt((t - c)^2) + t - c)/2) + 2*((sqrt((t - b)^2) + t - b)/2)^3)*d(x); }
+            impacts { floor: x >= 0 => impact_plastic; }
+        }",
+    );
+    let noise = NOISE.model();
+    for step in [0.05, 0.01] {
+        let course = Course::new(&noise, &[0.0], &[0.0], 2.0).tol(1e-8);
+        let end = course
+            .step(step)
+            .resting()
+            .run(Setting::free(Integrator::Dla4));
+        assert_eq!(end.outcome, Outcome::Done);
+        assert_eq!([end.q[0], end.qdot[0]], [0.0; 2]);
     }
 }

@@ -35,8 +35,8 @@ const PARTS: u32 = 256;
 /// well enough to decide.
 const DEPTH_OF_FIXED: u32 = 3;
 
-/// Shortest step that is examined, as a fraction of its time. Times inside a shorter step cannot be distinguished.
-const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
+/// Shortest step that should be examined, as a fraction of its time. Times inside a shorter step cannot be distinguished.
+pub(crate) const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
 
 /// Bound for the rounding error of a step, relative to the size of a component.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -53,9 +53,6 @@ const OF_SIZE: f64 = 0.25;
 pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
 ) -> Result<f64, Outcome> {
-    if step.length() <= SAME_MOMENT * step.t_end().abs() {
-        return Ok(1.0);
-    }
     let path = assumed(step)?;
     let mut along = Along {
         system: step.system,

@@ -17,6 +17,9 @@ use crate::record::{Observer, Segment};
 use crate::run::Run;
 use crate::state::StateVector;
 
+/// Maximum number of steps in a row that are too short to be examined.
+const MOMENTS: u32 = 1000;
+
 /// Default limit of the number of steps of a run.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
 
@@ -151,6 +154,8 @@ pub(crate) struct Progress<S> {
     rest: f64,
     /// Time since the last cut. It keeps its precision however short it is.
     flight: f64,
+    /// Number of steps in a row that are too short to be examined for such forces.
+    moments: u32,
     pub(crate) state: S,
     pub(crate) counters: Counters,
 }
@@ -164,6 +169,7 @@ impl<S> Progress<S> {
             t,
             rest: 0.0,
             flight: 0.0,
+            moments: 0,
             state,
             counters: Counters::default(),
         }
@@ -551,15 +557,27 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     }
 
     /// Repeats the step from the same start with a shorter length if a force acts only between its stages. True if it
-    /// is repeated.
+    /// is repeated. Ends the run if it does not get on: where rates lose their slope, every longer step may be too long.
     #[inline(never)]
     fn shorten_where_narrow(&mut self) -> Result<bool, Outcome> {
+        let t = self.stepper.t_start();
+        let is_moment = self.stepper.length() <= narrow::SAME_MOMENT * t.abs();
+        if is_moment {
+            self.progress.moments += 1;
+            if self.progress.moments > MOMENTS {
+                return Err(Outcome::StepUnderflow { t });
+            }
+            return Ok(false);
+        }
         let mut view = StepView {
             system: self.system,
             counters: &mut self.progress.counters,
             stepper: &mut *self.stepper,
         };
         let resolved = narrow::resolved(&mut view)?;
+        if resolved >= 1.0 {
+            self.progress.moments = 0;
+        }
         self.shorten_to(resolved)
     }
 

@@ -37,6 +37,13 @@ impl Brief {
         moment: 1.0 / (1 << 30) as f64,
         height: (1 << 14) as f64,
     };
+
+    /// True for a flight at `t` that begins with this gap rate, while `back` is the second rate by which the gap falls. `rounding`
+    /// is that of the gap.
+    fn covers(self, rate: f64, back: f64, t: f64, rounding: f64) -> bool {
+        2.0 * rate <= back * self.moment * t.abs()
+            || rate * rate <= 2.0 * back * self.height * rounding
+    }
 }
 
 /// Time between two impacts, in such flights, up to which the motion may be at the bottom.
@@ -62,6 +69,30 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.watch.hold(self.resting.held());
         let rates = now.system.gap_rates(now.t, now.state)?;
         self.watch.leave(hits, now, rates)?;
+        Ok(true)
+    }
+
+    /// True if held surfaces, behind kinks of their gaps, would let the motion go only for flights that cannot be resolved.
+    pub(super) fn holds_beyond_kink(&self, now: &mut Moment<'_, Sys>) -> Result<bool, Outcome> {
+        let (system, t, held) = (now.system, now.t, *self.resting.held());
+        if held.slide().is_some() {
+            return Ok(false);
+        }
+        let Some(forces) = held.sizes(system, t, now.state)? else {
+            return Ok(false);
+        };
+        let rates = system.gap_rates(t, now.state)?;
+        for surface in held.iter() {
+            let compliance = system
+                .contact(surface, t, now.state)?
+                .constrained_compliance;
+            let back = compliance * forces.as_slice()[surface];
+            let rounding = self.watch.rounding_at_cut(surface, now);
+            let rate = rates.as_slice()[surface].abs();
+            if back <= 0.0 || !Brief::UNRESOLVED.covers(rate, back, t, rounding) {
+                return Ok(false);
+            }
+        }
         Ok(true)
     }
 
@@ -102,9 +133,8 @@ impl<Sys: Impacting> Impacts<Sys> {
                 let contact = system.contact(surface, t, now.state)?;
                 let back = contact.constrained_compliance * forces.as_slice()[surface];
                 let rate = rates.as_slice()[surface].abs();
-                let is_brief = 2.0 * rate <= back * brief.moment * t.abs()
-                    || rate * rate
-                        <= 2.0 * back * brief.height * self.watch.rounding_at_cut(surface, now);
+                let rounding = self.watch.rounding_at_cut(surface, now);
+                let is_brief = brief.covers(rate, back, t, rounding);
                 if back <= 0.0 || !is_brief {
                     rising = Some(surface);
                 }

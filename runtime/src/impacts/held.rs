@@ -331,15 +331,24 @@ impl<G: StateVector> Held<G> {
         self.check_followed(&before, now)
     }
 
-    /// True if gap rates of the held surfaces are so small that they may be errors of the motion.
+    /// True if gap rates of the held surfaces are so small that they may be errors of the motion, which took a step of this
+    /// length: small beside the rate of a motion with the same energy, or beside that which the forces would have given.
     pub(super) fn are_errors<Sys: Impacting<Gaps = G>>(
         &self,
         rates: &G,
+        length: f64,
         now: &Moment<'_, Sys>,
     ) -> Result<bool, Fault> {
+        let (system, t) = (now.system, now.t);
+        let forces = self.sizes(system, t, now.state)?;
         for surface in self.iter() {
             let rate = rates.as_slice()[surface];
-            let whole = squared_rate(now.system, surface, (now.t, now.state))?;
+            let force = forces.map_or(0.0, |forces| forces.as_slice()[surface]);
+            let compliance = system
+                .contact(surface, t, now.state)?
+                .constrained_compliance;
+            let gained = compliance * force * length;
+            let whole = squared_rate(system, surface, (t, now.state))? + gained * gained;
             let is_small = rate * rate <= ERRORS * whole;
             if !is_small {
                 return Ok(false);

@@ -5,6 +5,7 @@ use super::bottom::Brief;
 use super::held::Held;
 use super::hits::Hits;
 use super::resting::Resting;
+use super::tangency::second_rate_at;
 use super::watch::Watch;
 use crate::audit::{Audit, Auditor};
 use crate::contract::Impacting;
@@ -156,6 +157,46 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.resting.press(surface, t)
     }
 
+    /// The surface hit at `theta` on which the motion is in balance at the start of the step and into which it is pressed at
+    /// the end, if it may rest there, and the part of the step where the pressure begins. In balance gap, gap rate and second
+    /// rate are 0.
+    ///
+    /// NOTE: dense output of a step across a kink of the force dips before the kink. The dip is no impact, and the law of the
+    /// surface would make hops of it.
+    fn pressed_from<Step: Stepper<Sys>>(
+        &self,
+        theta: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<Option<(usize, f64)>, Outcome> {
+        let mut candidates = (0..step.system.surface_count())
+            .filter(|surface| self.may_rest(*surface) && self.watch.comes_back(*surface, theta));
+        let Some(surface) = candidates.next() else {
+            return Ok(None);
+        };
+        let first = step.system.gap_rates(step.t_start(), step.start())?;
+        if first.as_slice()[surface] != 0.0 {
+            return Ok(None);
+        }
+        // NaN where there is none.
+        let mut second = |part: f64| {
+            step.counters.event_evaluations += 1;
+            second_rate_at(surface, step, part).unwrap_or(f64::NAN)
+        };
+        let (balance, last) = (second(0.0), second(1.0));
+        if balance != 0.0 || last.is_nan() || last >= 0.0 {
+            return Ok(None);
+        }
+        let [mut before, mut after] = [0.0, 1.0];
+        for _ in 0..ONSET {
+            let middle = 0.5 * (before + after);
+            match second(middle) < FAINT * last {
+                true => after = middle,
+                false => before = middle,
+            }
+        }
+        Ok(Some((surface, after)))
+    }
+
     /// The end of a run at a surface with the law [`Law::Stop`].
     pub(super) fn stopped_at(&self, surface: usize) -> Outcome {
         Outcome::StoppedAt {
@@ -180,6 +221,12 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.law_of(system, surface).is_map() && system.is_passable(surface)
     }
 }
+
+/// Number of halvings of a step that find where a force begins to press.
+const ONSET: u32 = 40;
+
+/// Second rate of a gap, relative to that at the end of the step, from which on a force presses.
+const FAINT: f64 = 1.0 / (1 << 20) as f64;
 
 impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
     type Forces = Held<Sys::Gaps>;
@@ -224,7 +271,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
         match self.watch.look(step) {
-            Ok(Some(theta)) if self.resting.is_none() => Ok(Some(self.watch.meet(theta, step))),
+            Ok(Some(theta)) if self.resting.is_none() => match self.pressed_from(theta, step)? {
+                Some((surface, part)) => Ok(self.press(surface, step)?.map(|_| part)),
+                None => Ok(Some(self.watch.meet(theta, step))),
+            },
             Ok(hit) if self.resting.is_none() => Ok(hit),
             Ok(hit) => {
                 let end = self.watch.end_of_hold(hit.unwrap_or(1.0), step)?;
@@ -296,8 +346,8 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         if let Some(surface) = self.resting.take_across() {
             return self.strike_across(surface, now, observer);
         }
-        let held = *self.resting.held();
-        self.resting.arrive_at_kink(now)?;
+        let (held, is_kink) = (*self.resting.held(), self.resting.is_behind_kink());
+        self.resting.arrive_at_kink(self.watch.length, now)?;
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;
             self.watch.hold(self.resting.held());
@@ -307,6 +357,13 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
                 self.watch.add_reached(&mut at_hand, now)?;
             }
             return self.watch.leave(&at_hand, now, rates);
+        }
+        if is_kink && self.holds_beyond_kink(now)? {
+            held.settle_rates(now)?;
+            let rates = now.system.gap_rates(now.t, now.state)?;
+            return self
+                .watch
+                .leave(&Hits::all_of(held.iter(), &rates), now, rates);
         }
         let mut hits = self.watch.hits(theta, now)?;
         held.iter().for_each(|surface| hits.add(surface));

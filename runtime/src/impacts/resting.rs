@@ -162,8 +162,10 @@ impl<G: StateVector> Resting<G> {
 
     /// Counts a kink behind which the step was cut, and takes errors of the motion before it from the gap rates, so that
     /// what is left of these is the jump at the kink. Ends the run in a crease, where no direction is that of the force.
+    /// `length` is that of the step.
     pub(super) fn arrive_at_kink<Sys: Impacting<Gaps = G>>(
         &mut self,
+        length: f64,
         now: &mut Moment<'_, Sys>,
     ) -> Result<(), Outcome> {
         if !self.is_behind_kink() {
@@ -183,7 +185,7 @@ impl<G: StateVector> Resting<G> {
             return Err(Outcome::Zeno { t, surface });
         }
         if let Some(rates) = self.rates.take()
-            && self.held.are_errors(&rates, now)?
+            && self.held.are_errors(&rates, length, now)?
         {
             self.held.cancel(&rates, now)?;
         }

@@ -3,6 +3,7 @@
 use super::held::second_rates;
 use crate::contract::Impacting;
 use crate::effects::StepView;
+use crate::error::Fault;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -44,15 +45,23 @@ pub(super) fn sinks_by_its_second_rate<Sys: Impacting, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     part: f64,
 ) -> Result<bool, Outcome> {
+    let second = second_rate_at(surface, step, part)?;
+    let elapsed = part * step.length();
+    let gap = step.system.gaps(step.time(part), &step.state(part));
+    Ok(second * elapsed * elapsed < gap.as_slice()[surface])
+}
+
+/// The second rate of a gap at a fraction of the step; NaN for a system that does not provide it.
+pub(super) fn second_rate_at<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> Result<f64, Fault> {
     let (t, state) = (step.time(part), step.state(part));
     let mut rate = step.system.zero_state();
     step.system.rate(t, &state, &mut rate)?;
-    let Some(accelerations) = second_rates(step.system, t, &state, &rate)? else {
-        return Ok(false);
-    };
-    let elapsed = part * step.length();
-    let gap = step.system.gaps(t, &state).as_slice()[surface];
-    Ok(accelerations.as_slice()[surface] * elapsed * elapsed < gap)
+    let second = second_rates(step.system, t, &state, &rate)?;
+    Ok(second.map_or(f64::NAN, |second| second.as_slice()[surface]))
 }
 
 /// True if a gap that is 0 at this fraction of a step, with gap rate 0, continues like the cube of time. If it

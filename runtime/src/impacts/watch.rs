@@ -193,6 +193,11 @@ impl<Sys: Impacting> Watch<Sys> {
             && (gap == 0.0 || gap >= -DRIFT * self.rounding_at_cut(surface, now))
     }
 
+    /// True if the motion touched a surface at the start of the step and hits it at `theta`.
+    pub(super) fn comes_back(&self, surface: usize, theta: f64) -> bool {
+        self.gaps.as_slice()[surface] == 0.0 && self.parts[surface] == Some(theta)
+    }
+
     /// Adds the walls in front of which the motion was at the start of the step, and which it no longer is after a small
     /// correction of the positions.
     pub(super) fn add_reached(
