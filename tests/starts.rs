@@ -1,7 +1,7 @@
 //! Starts that a declaration leaves open: the report of `check`, and completion of positions by the constraints;
 //! motions that continue with other parameters.
 
-use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, System};
+use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, StateVector, System};
 use dalembert_cli::{Exit, Integrator};
 use dalembert_stability::course::{Course, state, vector};
 use dalembert_stability::text::{Model, Text};
@@ -262,4 +262,30 @@ fn a_motion_is_carried_on_in_the_mode_that_it_is_in() {
     assert_eq!(heavier.mode(&carried), both);
     let velocity = heavier.velocity(3.0, &carried).expect("a state");
     assert_eq!(velocity.as_ref()[0], 1.0);
+}
+
+/// A blade along `y`, where `cos(theta)` is the rounding of 0: no sideways velocity is the rounding of an infinite one.
+#[test]
+fn a_velocity_is_not_divided_by_the_rounding_of_zero() {
+    static BLADE: Text = Text::new(
+        "Blade {
+            coordinates { x; y; theta: angle; }
+            lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2;
+            constraints { edge: sin(theta)*d(x) - cos(theta)*d(y) = 0; }
+        }",
+    );
+    let blade = BLADE.model();
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let completed = |given: [f64; 3], named: [f64; 3]| {
+        let q = vector(&[0.0, 0.0, quarter]);
+        blade.complete_velocity(0.0, &q, &vector(&given), &vector(&named))
+    };
+    let sideways = completed([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    assert!(
+        matches!(sideways, Err(StateError::OffConstraint { .. })),
+        "{sideways:?}"
+    );
+    let along = completed([0.0, 1.0, 0.0], [0.0, 1.0, 0.0]).expect("a velocity");
+    let [x, y] = [0, 1].map(|i| along.as_slice()[i]);
+    assert!(x.abs() < 1e-15 && y == 1.0, "{along:?}");
 }

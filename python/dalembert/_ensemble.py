@@ -161,7 +161,7 @@ class Ensemble:
 
     @property
     def statistics(self) -> dict[str, Statistics]:
-        """Statistics of the columns with numbers."""
+        """Statistics of the columns with numbers, over the members that do not end behind a surface."""
         return {name: Statistics(**_numbers(told)) for name, told in self._summary["statistics"].items()}
 
     @property

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use dalembert_driver::ensemble::density::{Axis, Counts, Density, MOST_BINS, convergence};
 use dalembert_driver::ensemble::exact::ExactSum;
 use dalembert_driver::ensemble::parquet::{self, Writer};
-use dalembert_driver::ensemble::row::{Columns, Field, Kind};
+use dalembert_driver::ensemble::row::{Columns, Field, Kind, is_behind};
 use dalembert_driver::ensemble::runner::{Common, Done, End, Runner, Shared};
 use dalembert_driver::ensemble::{Members, Quantity, Tally, Values, is_reached, pilot};
 use dalembert_driver::words::Advice;
@@ -321,11 +321,15 @@ impl Unit {
     fn add(&mut self, member: u64, done: Done, settings: &Settings) -> PyResult<()> {
         self.tally
             .add(&done.row, |outcome| is_reached(outcome, settings));
-        let numbers = done.row.iter().filter_map(|field| match field {
-            Field::Integer(count) => Some(*count as f64),
-            Field::Number(number) => Some(*number),
-            Field::Text(_) => None,
-        });
+        let counted = (!is_behind(&done.row)).then_some(&done.row);
+        let numbers = counted
+            .into_iter()
+            .flatten()
+            .filter_map(|field| match field {
+                Field::Integer(count) => Some(*count as f64),
+                Field::Number(number) => Some(*number),
+                Field::Text(_) => None,
+            });
         for (sum, number) in self.sums.iter_mut().zip(numbers) {
             sum.add(number);
         }

@@ -14,6 +14,10 @@ const ENTRIES: usize = 64 * 64;
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
+/// Size of a coefficient of a constraint, relative to the largest one, that may be the rounding of 0, as `cos(pi/2)` is. No
+/// velocity is divided by it.
+const ROUNDED: f64 = 8.0 * f64::EPSILON;
+
 /// Maximum number of Newton steps, for positions and for constraints that are nonlinear in the velocities.
 const STEPS: u32 = 48;
 
@@ -143,8 +147,11 @@ pub fn complete_velocities<Sys: Constrained>(
         let mut wanted = system.zero_multipliers();
         for (a, row) in forms.chunks_exact_mut(n.max(1)).enumerate() {
             wanted.as_mut_slice()[a] = -residual(row, affine.as_slice()[a], &velocities).0;
+            let largest = row
+                .iter()
+                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
             for (entry, named) in row.iter_mut().zip(named.as_slice()) {
-                if *named != 0.0 {
+                if *named != 0.0 || entry.abs() <= ROUNDED * largest {
                     *entry = 0.0;
                 }
             }

@@ -73,13 +73,17 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Takes the samples that are left up to the end `t` of the run, where the state is `last`. Returns the records.
+    /// Takes the samples that are left up to the end `t` of the run, where the state is `last`, and one at the end, wherever
+    /// it is. Returns the records.
     ///
     /// # Errors
     /// The first error of a receiver.
     pub fn finish(mut self, t: f64, last: &Point) -> Result<Record, CliError> {
         while let Some(time) = self.next_time().filter(|&time| time <= t) {
             self.sample(time, last);
+        }
+        if self.grid.count > 0 && self.grid.time(self.taken.saturating_sub(1)) != Some(t) {
+            self.sample(t, last);
         }
         if let Some(trace) = &mut self.record.trace {
             trace.end(t, last);

@@ -1,8 +1,8 @@
-//! Mean, standard deviation and extremes over all members, from exact sums. They do not depend on the division of the
+//! Mean, standard deviation and extremes over the members that are not behind a surface, from exact sums. They do not depend on the division of the
 //! members among threads and shards.
 
 use dalembert_driver::ensemble::exact::ExactSum;
-use dalembert_driver::ensemble::row::{Columns, Field, OUTPUT, Row};
+use dalembert_driver::ensemble::row::{Columns, Field, OUTPUT, Row, is_behind};
 
 /// Exact sums of the energy and of the outputs at the ends of the runs.
 pub struct Statistics {
@@ -26,8 +26,12 @@ impl Statistics {
         }
     }
 
-    /// Adds a row. Numbers that are not finite, as of a member that was refused, do not count.
+    /// Adds a row. Members behind a surface do not count, nor do numbers that are not finite, as of members
+    /// that are refused.
     pub fn add(&mut self, row: &Row) {
+        if is_behind(row) {
+            return;
+        }
         for ((_, place), sum) in self.columns.iter().zip(&mut self.sums) {
             if let Some(Field::Number(value)) = row.get(*place) {
                 sum.add(*value);

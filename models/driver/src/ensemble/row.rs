@@ -39,6 +39,15 @@ pub enum Field {
 /// A row, in the order of the columns.
 pub type Row = Vec<Field>;
 
+/// The outcome of members that are behind a surface, nearly always at their start.
+const BEHIND: &str = "starts_inside";
+
+/// True for the row of a member that is behind a surface. It does not count in statistics.
+pub fn is_behind(row: &[Field]) -> bool {
+    let mut texts = row.iter();
+    texts.any(|field| matches!(field, Field::Text(text) if text == BEHIND))
+}
+
 /// The columns.
 #[derive(Debug, Clone)]
 pub struct Columns {
