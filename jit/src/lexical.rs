@@ -27,6 +27,8 @@ const MEANT: [(char, &str); 18] = [
 /// The first mistake: its bytes, and what is wrong.
 pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
     let mut open: Vec<(usize, char)> = Vec::new();
+    // The first `{` whose `}` begins a line that stands further left: one between them may be missing.
+    let mut suspect: Option<usize> = None;
     let mut rest = text.char_indices().peekable();
     while let Some((at, character)) = rest.next() {
         let bytes = at..at + character.len_utf8();
@@ -50,7 +52,18 @@ pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
             }
             '(' | '[' | '{' => open.push((at, character)),
             ')' | ']' | '}' => match open.pop() {
+                Some((begin, '{')) if character == '}' => {
+                    let starts_line = line_before(text, at).trim().is_empty();
+                    let is_outer = starts_line && indent(text, at) < indent(text, begin);
+                    suspect = suspect.or(is_outer.then_some(begin));
+                }
                 None => return Some((bytes, format!("`{character}` closes no bracket"))),
+                Some((_, bracket))
+                    if closing(bracket) != character
+                        && !open.iter().any(|(_, other)| closing(*other) == character) =>
+                {
+                    return Some((bytes, format!("`{character}` closes no bracket")));
+                }
                 Some((_, bracket)) if closing(bracket) == character => {}
                 Some((begin, bracket)) => {
                     let line = text[..at].matches('\n').count() + 1;
@@ -74,9 +87,21 @@ pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
         }
     }
     let (begin, bracket) = open.pop()?;
+    let begin = suspect.filter(|_| bracket == '{').unwrap_or(begin);
     let missing = closing(bracket);
     let fault = format!("`{bracket}` is not closed\nwrite the missing `{missing}`");
     Some((begin..begin + 1, fault))
+}
+
+/// The line up to a place.
+fn line_before(text: &str, at: usize) -> &str {
+    text[..at].rsplit('\n').next().unwrap_or_default()
+}
+
+/// The white space at the start of the line of a place.
+fn indent(text: &str, at: usize) -> usize {
+    let line = line_before(text, at);
+    line.len() - line.trim_start().len()
 }
 
 /// The bracket that closes another one.
@@ -126,6 +151,10 @@ mod tests {
         assert_eq!(at, "(");
         assert!(words.contains("before `}` in line 2"), "{words}");
         assert!(told("P { x; ").1.contains("`{` is not closed"));
+        let text = "P {\n    a { x; }\n    b { y;\n    c { z; }\n}\n";
+        let (bytes, _) = fault(text).expect("a mistake");
+        assert_eq!(bytes.start, text.find("{ y").expect("the bracket of `b`"));
+        assert_eq!(told("P { let a = x); }").0, ")");
         assert!(told("P { x; }}").1.contains("`}` closes no bracket"));
         assert!(told("P { /* x /* y */ }").1.contains("comment"));
         assert!(told("P { x\u{2212}y }").1.contains("write `-`"));

@@ -202,7 +202,7 @@ impl Resolver<'_> {
         let help = match name {
             "PI" | "Pi" | "π" => "write `pi`",
             "e" | "euler" => "declare it; the exponential function is written `exp(x)`",
-            "E" | "H" if self.derived_names != DerivedNames::Nowhere => {
+            "E" | "H" | "Energy" | "ENERGY" if self.derived_names != DerivedNames::Nowhere => {
                 "the energy is written `energy`"
             }
             "time" => "time is written `t`",

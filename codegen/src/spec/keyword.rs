@@ -38,8 +38,9 @@ pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
 };
 
 /// Names of declarations in other languages, with advice.
-const FOREIGN_SECTIONS: [(&str, &str); 17] = [
+const FOREIGN_SECTIONS: [(&str, &str); 18] = [
     ("L", "write `lagrangian = ..;`"),
+    ("until", "write it into `initial { until = ..; }`"),
     ("coords", "write `coordinates { .. }`"),
     ("variables", "write `coordinates { .. }`"),
     ("states", "write `coordinates { .. }`"),
@@ -71,9 +72,18 @@ const FOREIGN_SECTIONS: [(&str, &str); 17] = [
 ];
 
 /// Functions of other languages, with advice.
-const FOREIGN_FUNCTIONS: [(&str, &str); 25] = [
+const FOREIGN_FUNCTIONS: [(&str, &str); 28] = [
     ("log", "write `ln(..)`"),
     ("log10", "write `ln(..)/ln(10)`"),
+    ("deg", "angles are in radians: 30 degrees are `30*pi/180`"),
+    (
+        "radians",
+        "angles are in radians: 30 degrees are `30*pi/180`",
+    ),
+    (
+        "degrees",
+        "angles are in radians: 30 degrees are `30*pi/180`",
+    ),
     ("log2", "write `ln(..)/ln(2)`"),
     ("arcsin", "write `asin(..)`"),
     ("arccos", "write `acos(..)`"),
@@ -106,12 +116,13 @@ const FOREIGN_FUNCTIONS: [(&str, &str); 25] = [
 ];
 
 /// Functions that are not differentiable and are refused in expressions.
-const NOT_DIFFERENTIABLE: [&str; 8] = [
+const NOT_DIFFERENTIABLE: [&str; 9] = [
     "max",
     "min",
     "floor",
     "ceil",
     "round",
+    "sgn",
     "sign",
     "signum",
     "heaviside",

@@ -10,6 +10,9 @@ use crate::diagnostics::Location;
 /// Comparison and logical operators, which no expression contains.
 const COMPARISONS: [&str; 10] = ["<=", ">=", "==", "!=", "<", ">", "&&", "||", "&", "|"];
 
+/// Modules of other languages before which functions are written: `np.sin(x)`.
+const MODULES: [&str; 6] = ["np", "numpy", "math", "Math", "sp", "sympy"];
+
 /// The notation of numbers, for messages.
 pub(super) const NUMBERS: &str = "numbers are written `12`, `0.5`, `1.25e-7`";
 
@@ -131,6 +134,9 @@ impl Cursor<'_> {
             (_, Some(TokenTree::Ident(function))) => {
                 let function = function.to_string();
                 match foreign_function(&function) {
+                    _ if is_function(&function) && MODULES.contains(&before.as_str()) => {
+                        format!("write `{function}(..)`")
+                    }
                     _ if is_function(&function) => format!("write `{function}({before})`"),
                     Some(instead) => instead.to_owned(),
                     None => "a function is written `sin(x)`".to_owned(),

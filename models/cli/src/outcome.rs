@@ -86,7 +86,7 @@ const fn remedy(outcome: &Outcome, rests: bool) -> Option<&'static str> {
             "a gap that the motion can change within the constraints"
         }
         Outcome::NonFinite { .. } | Outcome::LeftDomain => {
-            "a shorter --step or another start: a function has no value beyond this state"
+            "another start, or shorter steps (--max-step, --step): a function has no value beyond this state"
         }
         Outcome::StepUnderflow { .. } => {
             "a start away from the singularity; for a stiff motion, --integrator gauss6"

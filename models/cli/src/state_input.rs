@@ -1,5 +1,7 @@
 //! Converts flags to a model with its parameters, and to the initial state of a run.
 
+use std::path::Path;
+
 use dalembert_driver::{AnyModel, Beginning, Component, OffConstraint, Origin, Rates};
 
 use crate::args::{ModelArgs, RunArgs, StateArgs};
@@ -11,10 +13,24 @@ use crate::scalar;
 /// The model of this name in the list.
 ///
 /// # Errors
-/// [`CliError::Unknown`] if no model has this name.
+/// No model has this name.
 pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliError> {
     let names = models.iter().map(Entry::name);
-    Ok(&models[names::find("MODEL", "model", name, names)?])
+    let found = names::find("MODEL", "model", name, names);
+    let place = found.map_err(|unknown| match beside(name) {
+        Some(file) => CliError::Input {
+            place: "MODEL".to_owned(),
+            reason: format!("unknown model `{name}`; the file is named `{file}`"),
+        },
+        None => unknown.into(),
+    })?;
+    Ok(&models[place])
+}
+
+/// The model file of this name without its extension, if there is one.
+fn beside(name: &str) -> Option<String> {
+    let file = format!("{name}.dal");
+    Path::new(&file).is_file().then_some(file)
 }
 
 /// The model that a command names, in its scene and first mode, with `--set` applied and every parameter checked.

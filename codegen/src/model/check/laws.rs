@@ -40,8 +40,17 @@ impl Resolver<'_> {
 
     fn unknown_law(&mut self, name: &Word) -> Option<Law> {
         let laws = LAWS.map(|(known, _)| known);
-        let near = nearest(&name.text, laws).map(|near| format!("did you mean `{near}`? "));
-        let help = format!("{}the laws are {}", near.unwrap_or_default(), listed(laws));
+        let ending = format!("_{}", name.text);
+        let longer: Vec<String> = (laws.iter())
+            .filter(|law| law.ends_with(&ending))
+            .map(|law| format!("`{law}`"))
+            .collect();
+        let near = match nearest(&name.text, laws) {
+            _ if !longer.is_empty() => format!("did you mean {}? ", longer.join(" or ")),
+            Some(near) => format!("did you mean `{near}`? "),
+            None => String::new(),
+        };
+        let help = format!("{near}the laws are {}", listed(laws));
         self.refuse(name.at, format!("unknown law `{}`", name.text), &help)
     }
 

@@ -88,6 +88,10 @@ pub(in crate::model) fn check_mode(
     resolver.modes = modes;
     resolver.constants();
     resolver.all_coordinates();
+    if spec.coordinates.is_empty() {
+        // NOTE: every name of a coordinate would be reported as unknown.
+        return Err(resolver.diagnostics);
+    }
     resolver.all_parameters();
     resolver.check_columns();
     resolver.order_symbols();

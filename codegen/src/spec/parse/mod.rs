@@ -118,7 +118,7 @@ fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
                 lines.extend(source::doc_lines(text));
             }
             _ => {
-                let help = "a doc comment is written `/// ..`";
+                let help = "a comment is written `// ..`, a doc comment `/// ..`";
                 return Err(cursor.refuse(at, "attributes are not part of a model", help));
             }
         }

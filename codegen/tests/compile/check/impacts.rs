@@ -42,6 +42,10 @@ fn laws_are_known_and_have_their_coefficients() {
         "did you mean `elastic`?",
     );
     refused_in(
+        "impacts { w: x >= 0 => «plastic»; }",
+        "did you mean `nonholonomic_plastic` or `impact_plastic` or `totally_plastic`?",
+    );
+    refused_in(
         "impacts { w: x >= 0 => restitution(«1.2»); }",
         "restitution 1.2 adds energy",
     );

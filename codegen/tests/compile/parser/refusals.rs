@@ -120,7 +120,11 @@ fn declarations_are_known() {
     refused_in("initial «=» 3;", "expected `{ .. }` after `initial`");
     refused_in(
         "«#»[cfg(test)] let a = 1;",
-        "attributes are not part of a model",
+        "attributes are not part of a model\nhelp: a comment is written `// ..`",
+    );
+    refused_in(
+        "«until» = 3;",
+        "help: write it into `initial { until = ..; }`",
     );
     refused(
         "P { coordinates { x; } lagrangian = x; } «Q» {}",

@@ -19,6 +19,7 @@ fn slips_in_expressions_are_named() {
         "function call needs parentheses\nhelp: write `sin(x)`",
     );
     refused_expression("«sin»^2*x", "the power of a function is written `sin(x)^2`");
+    refused_expression("np«.»sin(x)", "unexpected `.`\nhelp: write `sin(..)`");
     refused_expression("m «v»^2", "missing operator before `v`");
     refused_expression("x «<» 1", "`<` is not differentiable");
     refused_expression("x «==» 1", "`==` is not differentiable");
