@@ -143,7 +143,7 @@ fn statistics_are_those_of_the_rows() {
     let text = run(BALLS).output;
     let row = text
         .lines()
-        .find(|line| line.starts_with("  energy   ") && line.ends_with(" 126"));
+        .find(|line| line.starts_with("  energy   ") && line.ends_with(" 112"));
     let shown = row.unwrap_or_else(|| panic!("{text}")).split_whitespace();
     let shown: Vec<f64> = shown.skip(1).map(|word| word.parse().unwrap()).collect();
     assert!((shown[0] / mean - 1.0).abs() < 1e-8, "{text}");
