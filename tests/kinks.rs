@@ -453,27 +453,3 @@ fn a_point_in_balance_on_a_floor_stays_on_it_from_a_kink_on() {
         }
     }
 }
-
-/// Forces that are rounding errors before a kink, in front of which the point is in balance.
-#[test]
-fn rounding_of_a_force_in_balance_holds_nothing() {
-    static NOISE: Text = Text::new(
-        "Noise {
-            coordinates { x; }
-            parameters { c = 1/2; b = 4/5; }
-            lagrangian = dot(x)^2/2;
-            forces { f: (-10*((sqrt((t - c)^2) + t - c)/2) + 2*((sqrt((t - b)^2) + t - b)/2)^3)*d(x); }
-            impacts { floor: x >= 0 => impact_plastic; }
-        }",
-    );
-    let noise = NOISE.model();
-    for integrator in [Integrator::Dla4, Integrator::Dop853] {
-        let course = Course::new(&noise, &[0.0], &[0.0], 2.0)
-            .tol(1e-8)
-            .step(0.05);
-        let end = course.resting().run(Setting::free(integrator));
-        let case = format!("{}: {:?} {:?}", integrator.name(), end.outcome, end.q);
-        assert_eq!(end.outcome, Outcome::Done, "{case}");
-        assert!(end.q[0].abs() < 1e-9, "{case}");
-    }
-}
