@@ -22,7 +22,7 @@ pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliE
             place: "MODEL".to_owned(),
             reason: format!("unknown model `{name}`; the file is named `{file}`"),
         },
-        None => unknown.into(),
+        None => unknown,
     })?;
     Ok(&models[place])
 }
