@@ -185,6 +185,9 @@ fn is_multiple(model: &mut Model, one: ExprId, other: ExprId) -> bool {
     let symbols: Vec<SymbolId> = positions.chain([model.time]).collect();
     symbols.into_iter().any(|by| {
         let slopes = [one, other].map(|value| model.pool.diff(value, by));
+        if model.pool.zero_test(slopes[1]) != Zero::Refuted {
+            return false;
+        }
         let ratio = model.pool.div(slopes[0], slopes[1]);
         let ratio = model.pool.simplify(ratio);
         let multiple = model.pool.mul(ratio, other);

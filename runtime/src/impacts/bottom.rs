@@ -10,6 +10,7 @@ use super::impulse::Impacts;
 use super::instantaneous::is_rough;
 use crate::contract::Impacting;
 use crate::effects::Moment;
+use crate::error::Fault;
 use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::policy::Rest;
@@ -83,17 +84,27 @@ impl<Sys: Impacting> Impacts<Sys> {
         };
         let rates = system.gap_rates(t, now.state)?;
         for surface in held.iter() {
-            let compliance = system
-                .contact(surface, t, now.state)?
-                .constrained_compliance;
-            let back = compliance * forces.as_slice()[surface];
-            let rounding = self.watch.rounding_at_cut(surface, now);
-            let rate = rates.as_slice()[surface].abs();
-            if back <= 0.0 || !Brief::UNRESOLVED.covers(rate, back, t, rounding) {
+            if !self.brings_back(surface, [&forces, &rates], Brief::UNRESOLVED, now)? {
                 return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    /// True if the contact force of a surface ends a flight that begins with its gap rate, and the flight is brief. Given are
+    /// the forces and the gap rates of all surfaces.
+    fn brings_back(
+        &self,
+        surface: usize,
+        [forces, rates]: [&Sys::Gaps; 2],
+        brief: Brief,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<bool, Fault> {
+        let contact = now.system.contact(surface, now.t, now.state)?;
+        let back = contact.constrained_compliance * forces.as_slice()[surface];
+        let rate = rates.as_slice()[surface].abs();
+        let rounding = self.watch.rounding_at_cut(surface, now);
+        Ok(back > 0.0 && brief.covers(rate, back, now.t, rounding))
     }
 
     /// The surfaces on which the motion comes to rest. `None` if they are fewer than two, or if it rises from one
@@ -130,12 +141,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             };
             let mut rising = None;
             for surface in bottom.iter() {
-                let contact = system.contact(surface, t, now.state)?;
-                let back = contact.constrained_compliance * forces.as_slice()[surface];
-                let rate = rates.as_slice()[surface].abs();
-                let rounding = self.watch.rounding_at_cut(surface, now);
-                let is_brief = brief.covers(rate, back, t, rounding);
-                if back <= 0.0 || !is_brief {
+                if !self.brings_back(surface, [&forces, &rates], brief, now)? {
                     rising = Some(surface);
                 }
             }
