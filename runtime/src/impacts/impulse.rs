@@ -168,8 +168,12 @@ impl<Sys: Impacting> Impacts<Sys> {
         theta: f64,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<(usize, f64)>, Outcome> {
+        let holds = |surface: usize| {
+            let law = self.law_of(step.system, surface);
+            self.may_rest(surface) && !law.is_map() && law != Law::Stop
+        };
         let mut candidates = (0..step.system.surface_count())
-            .filter(|surface| self.may_rest(*surface) && self.watch.comes_back(*surface, theta));
+            .filter(|surface| holds(*surface) && self.watch.comes_back(*surface, theta));
         let Some(surface) = candidates.next() else {
             return Ok(None);
         };
