@@ -343,6 +343,15 @@ fn where_motions_come_together_an_infinite_density_is_not_claimed() {
         let reason = format!("motions may reach states where `{place}` is 0 and stay there");
         stays_open(&model, claim, &reason);
     }
+    // The differential of a root is infinite.
+    for (claim, place) in [
+        ("invariant: d(sqrt(x))", "x"),
+        ("invariant: d(sqrt(x))^d(y)", "x"),
+    ] {
+        let reason = format!("motions may reach states where `{place}` is 0 and stay there");
+        stays_open(&rate("-sqrt(x)"), claim, &reason);
+    }
+    check(&rate("-sqrt(x)"), "invariant: d(y)", Proved);
     // No motion reaches `x = 0`, and the divergence is finite, or the density is.
     check(&rate("x"), "density = 1/x", Proved);
     check(&rate("-x^3"), "density = 1/x^3", Proved);
@@ -350,4 +359,38 @@ fn where_motions_come_together_an_infinite_density_is_not_claimed() {
     let turning =
         "coordinates { x; y; } field { dot(x) = -y/(x^2 + y^2); dot(y) = x/(x^2 + y^2); }";
     check(turning, "density = 1/(x^2 + y^2)", Proved);
+}
+
+/// A root gives a velocity, and motions reach its zero and stay there, where the rate of the root does not exist.
+#[test]
+fn claims_about_velocities_that_a_root_gives_stay_open() {
+    let planar = |constraint: &str| {
+        format!(
+            "coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints {{ c: {constraint}; }}"
+        )
+    };
+    let along = planar("dot(y) = -2*sqrt(y)*dot(x)");
+    let turning = planar("dot(y) = sqrt(1 - y^2)*dot(x)");
+    let falling = planar("dot(x) = -sqrt(x)");
+    let field = "coordinates { x; y; } field { dot(y) = -2*sqrt(y); dot(x) = 1; }".to_owned();
+    let sine = "y*cos(x) - dot(y)/dot(x)*sin(x)";
+    for (model, claim, place) in [
+        (&along, "conserved: dot(y)/dot(x) - 2*x".to_owned(), "y"),
+        (&along, "integrable: dot(y)/dot(x) - 2*x".to_owned(), "y"),
+        (&turning, format!("conserved: {sine}"), "1 - y^2"),
+        (&turning, format!("not conserved: {sine}"), "1 - y^2"),
+        (&falling, "conserved: dot(x) - t/2".to_owned(), "x"),
+        (&falling, "conserved: momentum(x) - t/2".to_owned(), "x"),
+        (&falling, "invariant: d(dot(x))".to_owned(), "x"),
+        (&field, "conserved: dot(y) - 2*x".to_owned(), "y"),
+    ] {
+        let reason = format!("motions may reach states where `{place}` is 0 and stay there");
+        stays_open(model, &claim, &reason);
+    }
+    // Velocities that no root gives, the energy, and roots of what is never 0.
+    check(&falling, "conserved: dot(y)", Proved);
+    check(&along, "conserved: energy", Proved);
+    check(&field, "conserved: dot(x)", Proved);
+    let away = planar("dot(y) = -2*sqrt(1 + y^2)*dot(x)");
+    check(&away, "not conserved: dot(x)", Proved);
 }

@@ -30,7 +30,7 @@
 
 use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
-use super::barriers::is_avoided;
+use super::barriers::{cannot_stay, is_avoided};
 use super::conserved::{is_constant, jump_unless};
 use super::continuity::{WithLogarithms, has_gaps, infinite_slopes, is_smooth, may_bend, poles};
 use super::definite::is_regular;
@@ -40,8 +40,8 @@ use super::examine::explicit;
 use super::finding::Verdict;
 use super::kept::stated_or_one;
 use super::symmetry::keeps_lagrangian;
-use crate::mechanics::Derivation;
-use crate::model::{Claim, Existence, Model, Statement};
+use crate::mechanics::{ConstraintForm, Derivation};
+use crate::model::{Claim, Existence, ExteriorForm, Model, Statement};
 
 /// The verdict on a claim about the motion, left open if the equations of motion may jump.
 pub(super) fn unless_abrupt(
@@ -190,10 +190,13 @@ impl Equations<'_> {
             | Statement::EnergyNotIncreasing(surface) => {
                 self.on_surfaces(model, &[*surface], Harmless::NOWHERE)
             }
-            Statement::Conserved { value, .. } => self.on_values(model, &[*value]),
+            Statement::Conserved { value, .. } => self
+                .on_values(model, &[*value])
+                .or_else(|| self.merge(model, &[*value])),
             Statement::Integrable(functions) => {
                 let values: Vec<ExprId> = functions.iter().map(|it| it.value).collect();
                 self.on_values(model, &values)
+                    .or_else(|| self.merge(model, &values))
                     .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
             }
             Statement::Density(value) => self.of_density(model, Some(*value)),
@@ -213,13 +216,16 @@ impl Equations<'_> {
                     .or_else(|| self.among(model, &forces, Harmless::AT_TIMES))
                     .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
             }
-            Statement::Invariant(_) => {
+            Statement::Invariant(form) => {
                 let terms = self.terms(model);
-                let coefficients = written_out(model, &statement.expressions());
+                let expressions = statement.expressions();
+                let slopes = slopes_of_differentials(model, form);
+                let coefficients = written_out(model, &[expressions.clone(), slopes].concat());
                 self.on_states(model, Harmless::AT_THIN_SETS)
                     .or_else(|| self.among(model, &terms, Harmless::AT_TIMES))
                     .or_else(|| self.on_surfaces(model, &surfaces, Harmless::NOWHERE))
                     .or_else(|| self.collapse(model, &coefficients, &terms))
+                    .or_else(|| self.merge(model, &expressions))
             }
             Statement::Symmetry(field) => {
                 let along = Harmless {
@@ -312,10 +318,55 @@ impl Equations<'_> {
         if self.possible_zeros(model, unbounded).is_empty() {
             return None;
         }
-        let text = model.pool.text(place);
-        Some(format!(
-            "motions may reach states where `{text}` is 0 and stay there"
-        ))
+        Some(may_stay(&model.pool.text(place)))
+    }
+
+    /// A place where motions may stay because a root gives a velocity on which these values depend, as text. The rate of the
+    /// values rests on the derivative of the root, which does not exist there: `dot(x) = -sqrt(x)` reaches `x = 0` and
+    /// stays, so that `dot(x) - t/2` changes.
+    fn merge(&self, model: &mut Model, values: &[ExprId]) -> Option<String> {
+        let is_affine = self
+            .derivation
+            .constraints
+            .iter()
+            .any(|constraint| model.pool.zero_test(constraint.affine) != Zero::Proved);
+        // The power balance of the energy has no derivative of a constraint that does no work.
+        let energy = model.pool.variable(model.derived.energy);
+        if values == [energy] && !model.is_first_order() && !is_affine {
+            return None;
+        }
+        let values: Vec<ExprId> = values.iter().map(|it| explicit(model, *it)).collect();
+        for (velocities, terms) in self.equations_of_velocities(model) {
+            let mut dependent = values.iter();
+            if !dependent.any(|value| model.pool.depends_on_any(*value, &velocities)) {
+                continue;
+            }
+            let parts = model.pool.reachable(&terms);
+            let mut roots = infinite_slopes(&mut model.pool, &parts);
+            roots.retain(|root| !cannot_stay(model, *root));
+            if let Some(place) = self.possible_zeros(model, roots).first() {
+                let text = model.pool.text(*place);
+                return Some(may_stay(&text));
+            }
+        }
+        None
+    }
+
+    /// The equations that determine velocities: their velocities, and the terms of each.
+    fn equations_of_velocities(&self, model: &Model) -> Vec<(Vec<SymbolId>, Vec<ExprId>)> {
+        let velocities: Vec<SymbolId> = model.coordinates.iter().map(|it| it.qdot).collect();
+        if let Some(rates) = &model.field {
+            let pairs = velocities.into_iter().zip(rates);
+            return pairs.map(|(by, rate)| (vec![by], vec![*rate])).collect();
+        }
+        let constraints = self.derivation.constraints.iter();
+        let equation = |constraint: &ConstraintForm| {
+            let entries = velocities.iter().zip(&constraint.form);
+            let own = entries.filter(|(_, entry)| !model.pool.is_syntactic_zero(**entry));
+            let terms = constraint.form.iter().chain([&constraint.affine]);
+            (own.map(|(by, _)| *by).collect(), terms.copied().collect())
+        };
+        constraints.map(equation).collect()
     }
 
     /// Those of the expressions that may be 0 in some state, and along a motion.
@@ -506,6 +557,27 @@ fn written_out(model: &mut Model, values: &[ExprId]) -> Vec<ExprId> {
     let velocities = model.coordinates.iter().map(|it| it.qdot);
     let rates: Vec<(SymbolId, ExprId)> = velocities.zip(rates).collect();
     model.pool.substitute_all(&values, &rates)
+}
+
+/// The derivatives of the functions whose differentials occur in a form, by coordinates, velocities and time.
+fn slopes_of_differentials(model: &mut Model, form: &ExteriorForm) -> Vec<ExprId> {
+    let coordinates = model.coordinates.iter();
+    let mut symbols: Vec<SymbolId> = coordinates.flat_map(|it| [it.q, it.qdot]).collect();
+    symbols.push(model.time);
+    let functions = form.terms.iter().flat_map(|term| &term.differentials);
+    let functions: Vec<ExprId> = functions.copied().collect();
+    let functions: Vec<ExprId> = functions.iter().map(|it| explicit(model, *it)).collect();
+    let pairs = functions
+        .iter()
+        .flat_map(|function| symbols.iter().map(move |by| (*function, *by)));
+    pairs
+        .map(|(function, by)| model.pool.diff(function, by))
+        .collect()
+}
+
+/// Text for a place that motions may reach and not leave.
+fn may_stay(place: &str) -> String {
+    format!("motions may reach states where `{place}` is 0 and stay there")
 }
 
 fn motion_jumps(place: &str) -> String {

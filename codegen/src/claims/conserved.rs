@@ -23,8 +23,12 @@ pub(super) fn check_conserved(
     holds: bool,
     seed: u64,
 ) -> Verdict {
+    let motion = match model.surfaces.is_empty() {
+        true => "the motion on D",
+        false => "the motion on D between impacts",
+    };
     let wording = Wording {
-        vanishes: format!("the rate of `{written}` along the motion on D is 0"),
+        vanishes: format!("the rate of `{written}` along {motion} is 0"),
         differs: format!("`{written}` changes along the motion"),
         help: [
             format!("write `not conserved: {written};`"),
