@@ -221,6 +221,38 @@ fn a_run_to_its_last_impact_is_verified() {
     assert!(error_of(&done).contains("reference"), "{}", done.output);
 }
 
+/// Between impacts the motion is a polynomial in time, so that all runs do the same arithmetic there.
+#[test]
+fn rounding_that_impacts_amplify_is_measured() {
+    let billiard = "B { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2; \
+        impacts { l: x >= -1; r: x <= 1; b: y >= -1; u: y <= 1; disk: x^2 + y^2 >= 1/4; } \
+        initial { x = 0.7; y = 0.3; dot(x) = -1; dot(y) = 0.37; until = 60; } }";
+    let map = "M { coordinates { c; x; } field { dot(c) = 1; dot(x) = 0; } \
+        impacts { s: c <= 1 => reset { c = 0; x = 4*x*(1 - x); }; } initial { x = 0.3; until = 100.5; } }";
+    let verify = |text: &str, flags: &str| {
+        let line = format!("simulate - --verify {flags}");
+        run_over(&[], text, &line.split_whitespace().collect::<Vec<_>>())
+    };
+    for (text, told) in [
+        (billiard, "the runs differ at impact"),
+        (map, "rounding grows along this motion"),
+    ] {
+        let done = verify(text, "");
+        assert_eq!(done.exit, Exit::Other, "{}", done.output);
+        assert!(error_of(&done).contains(told), "{}", done.output);
+    }
+    for (text, flags) in [(billiard, "--until 10"), (map, "--until 10.5")] {
+        let done = verify(text, flags);
+        assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+    }
+    // An impact at the end of the run, up to rounding.
+    let square = "S { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2; \
+        impacts { a: x >= 0; b: x <= 1; c: y >= 0; u: y <= 1; } \
+        initial { x = 1; y = 0.3; dot(x) = -0.7; dot(y) = 0.33; until = 1000; } }";
+    let done = verify(square, "");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+}
+
 /// How many hops are carried out before their limit is up to rounding.
 #[test]
 fn hops_that_end_at_one_limit_are_one_motion() {

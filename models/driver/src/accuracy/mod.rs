@@ -37,7 +37,7 @@ use std::time::{Duration, Instant};
 
 use dalembert::audit::Finding;
 use dalembert::integrate::{Counters, counted_work};
-use dalembert::{Outcome, Policies, Run, SceneEffects, TaylorField};
+use dalembert::{Outcome, Policies, Run, SceneEffects, StateVector, TaylorField};
 use thiserror::Error;
 
 use crate::integrator::{Form, Integrator};
@@ -443,19 +443,32 @@ struct Reference {
     doubt: Option<String>,
 }
 
+/// Runs the model twice. The second run starts at a state that differs by rounding, and has shorter steps. Otherwise the
+/// arithmetic of both would be the same where the motion between impacts is a polynomial in time, and would not show how
+/// impacts amplify rounding.
 fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<Reference, Refusal> {
-    let [first, second] = FINEST.map(|tol| {
-        let settings = Settings {
-            integrator: Integrator::Taylor,
-            tol,
-            step: None,
-            steps: None,
-            ..base.clone()
-        };
-        audited(model, state, &settings, base.until)
+    let [finest, second] = FINEST.map(|tol| Settings {
+        integrator: Integrator::Taylor,
+        tol,
+        step: None,
+        steps: None,
+        ..base.clone()
     });
-    let (track, second) = (first?, second?);
-    let names = ["the reference", "a second reference with other steps"];
+    let track = audited(model, state, &finest, base.until)?;
+    let mean = track.t / track.counters.accepted.max(1) as f64;
+    let shorter = Settings {
+        max_step: match second.max_step {
+            Some(step) => Some(step.min(SHORTER * mean)),
+            None => Some(SHORTER * mean),
+        }
+        .filter(|step| *step > 0.0),
+        ..second
+    };
+    // The rounding of impacts, also that of their times, adds up like a random walk.
+    let units = 1.0 + (track.counters.impacts as f64).sqrt();
+    let other = rounded_otherwise(model, state, units);
+    let second = audited(model, &other, &shorter, base.until)?;
+    let names = ["the reference", "a second reference, with other rounding,"];
     let doubt = track
         .doubt(names[0])
         .or_else(|| second.doubt(names[1]))
@@ -471,13 +484,42 @@ fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<R
     })
 }
 
+/// Largest step of the second reference, over the mean step of the first.
+const SHORTER: f64 = 0.7;
+
+/// A state whose momenta or quasi-velocities, or for a first-order system whose positions, differ by this number of units of
+/// rounding, in turn up and down. Other positions stay, because a start may lie on a surface.
+fn rounded_otherwise<M: Model>(model: &M, state: &M::State, units: f64) -> M::State {
+    let mut other = *state;
+    let components = other.as_mut_slice();
+    // The last component of a state with modes is the number of the mode.
+    let count = components.len() - usize::from(!model.description().modes.is_empty());
+    let positions = model.description().coordinates.len();
+    let from = match positions < count {
+        true => positions,
+        false => 0,
+    };
+    for (k, component) in components[from..count].iter_mut().enumerate() {
+        // The neighbours of 0 are no rounding of it.
+        let unit = match *component {
+            0.0 => 0.0,
+            value => value.next_up() - value,
+        };
+        *component += match k % 2 {
+            0 => units * unit,
+            _ => -units * unit,
+        };
+    }
+    other
+}
+
 fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<Track, Refusal> {
     let mut probe = Probe::new(model, settings.until);
     let solved = run::solve(model, state, settings, &mut probe)?;
     Ok(probe.track(&solved, Audited::Not))
 }
 
-/// Relative difference between times up to which a finding belongs to the end of a run.
+/// Relative difference between times up to which a finding or an impact belongs to the end of a run.
 const AT_END: f64 = 1e-10;
 
 /// True if an audit found what the run ends with: a surface that begins to count with the motion behind it.

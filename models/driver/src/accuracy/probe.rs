@@ -7,7 +7,7 @@ use dalembert::describe::Topology;
 use dalembert::integrate::Counters;
 use dalembert::{Event, Hold, Observer, Outcome, Segment, StateVector};
 
-use super::TIMES;
+use super::{AT_END, TIMES};
 use crate::grid::Grid;
 use crate::names;
 use crate::run::{Ending, Solved};
@@ -239,14 +239,32 @@ impl Track {
             }
             from = until;
         }
-        let until = [self.impacts.len(), other.impacts.len()];
+        // Impacts before an accumulation were compared already.
+        let rest = [self.impacts.len() - from[0], other.impacts.len() - from[1]];
+        let more = [
+            self.more_at_end(other).min(rest[0]),
+            other.more_at_end(self).min(rest[1]),
+        ];
+        let until = [self.impacts.len() - more[0], other.impacts.len() - more[1]];
         let differs = self.differs_between(other, from, until, None);
         let end = |track: &Self, from: usize| {
             let impacts = track.counters.impacts.saturating_sub(from as u64);
             (track.outcome.kind(), track.limits.len(), impacts)
         };
-        let ends_alike = end(self, from[0]) == end(other, from[1]);
+        let ends_alike = end(self, from[0] + more[0]) == end(other, from[1] + more[1]);
         differs.or_else(|| (!ends_alike).then_some(Difference::End))
+    }
+
+    /// Number of impacts that this run has more than the other, if they lie at its end: rounding decides whether an impact
+    /// lies before or after it.
+    fn more_at_end(&self, other: &Self) -> usize {
+        let more = self.impacts.len().saturating_sub(other.impacts.len());
+        let last = &self.impacts[self.impacts.len() - more..];
+        let is_at_end = |met: &Met| (met.t - self.t).abs() <= AT_END * self.t.abs();
+        match last.iter().all(is_at_end) {
+            true => more,
+            false => 0,
+        }
     }
 
     /// The first difference between impacts of both runs. Before an accumulation on a surface, one of the runs may have more

@@ -14,8 +14,7 @@ use crate::names;
 use crate::outcome;
 
 /// Remedy for a run whose impacts are not confirmed.
-const SHORTER_STEPS: &str =
-    "a smaller --tol, or --max-step H for shorter steps of the run and of its references";
+const SHORTER_STEPS: &str = "a smaller --tol, an earlier end, or --max-step H for shorter steps of the run and of its references";
 
 /// Writes the summary.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
