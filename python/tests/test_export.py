@@ -108,6 +108,20 @@ def test_impacts_of_a_header_are_those_of_a_run(compiler, tmp_path):
             np.testing.assert_allclose(call(f"{name}_velocity", event["t"], struck, k)[1], after[1], rtol=1e-12, atol=1e-12)
 
 
+def test_impacts_with_instantaneous_constraints_begin_with_focusing(compiler, tmp_path):
+    text = """
+        Spun { coordinates { x; y; th; } lagrangian = (dot(x)^2 + dot(y)^2 + 0.4*dot(th)^2)/2;
+            impacts { wall: y <= 1 => elastic, instantaneous { roll: dot(th) = 0.1*dot(x); }; } }
+    """
+    model = dalembert.Model.from_text(text)
+    _, call = compiled(compiler, model.to_c(), tmp_path, "spun")
+    state = np.array([0.5, 1, 0, 1, 1, 0.4 * 0.7])
+    focused = call("spun_focus_wall", 0.0, state, [])[1]
+    struck = call("spun_impact_wall", 0.0, focused, [])[1]
+    along = (1 + 0.4 * 0.1 * 0.7) / (1 + 0.4 * 0.1**2)
+    close(call("spun_velocity", 0.0, struck, [])[1], [along, -1, 0.1 * along])
+
+
 def test_faults_have_numbers(compiler, tmp_path):
     text = """
         Thin { coordinates { x; y; } lagrangian = (1 - x)*dot(x)^2/2 + dot(y)^2/2; initial { x = 0; } }

@@ -540,3 +540,34 @@ fn quantities_have_their_names_in_the_language() {
     let unknown = run("simulate bouncing_ball --until 1 --initial dot(y)=1");
     assert!(unknown.errors.contains("`dot(y)`"), "{}", unknown.errors);
 }
+
+/// The surfaces are met at one time, and both orders of their resets lead to one state.
+#[test]
+fn resets_whose_order_does_not_matter_are_carried_out() {
+    let planar = |impacts: &str, start: &str| {
+        format!(
+            "P {{ coordinates {{ x; y; n; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(n)^2)/2; \
+             impacts {{ {impacts} }} initial {{ {start} until = 2; }} }}"
+        )
+    };
+    let periodic = planar(
+        "r: x <= 1 => reset { x = x - 2; }; b: y >= -1 => reset { y = y + 2; };",
+        "x = 0.5; y = -0.5; dot(x) = 1; dot(y) = -1;",
+    );
+    let counted = planar(
+        "a: y >= 0; b: x >= 0 => reset { dot(x) = -dot(x); n = n + 1; };",
+        "x = 2; y = 1; dot(x) = -2; dot(y) = -1;",
+    );
+    for text in [periodic, counted] {
+        let done = run_over(&[], &text, &["simulate", "-"]);
+        assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+        assert!(done.output.contains("impacts     2"), "{}", done.output);
+    }
+    // The second reset takes the value that the first one gives.
+    let shared = planar(
+        "r: x <= 1 => reset { x = x - 2; n = n + 1; }; b: y >= -1 => reset { y = y + 2; n = 2*n; };",
+        "x = 0.5; y = -0.5; n = 3; dot(x) = 1; dot(y) = -1;",
+    );
+    let done = run_over(&[], &shared, &["simulate", "-"]);
+    assert!(done.output.contains("ambiguous"), "{}", done.output);
+}

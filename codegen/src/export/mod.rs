@@ -177,9 +177,22 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
         ),
         Kernel::Blow(s) => {
             let (shown, plain) = surface(s)?;
+            let is_focused = kernels_of(form).any(|kernel| kernel == Kernel::Focus(s));
+            let from = match is_focused {
+                true => format!(", which begins at the result of focus_{plain}"),
+                false => String::new(),
+            };
             (
                 format!("impact_{plain}"),
-                format!("the state after an impact on {shown} by its law"),
+                format!("the state after an impact on {shown} by its law{from}"),
+                Takes::State,
+            )
+        }
+        Kernel::Focus(s) => {
+            let (shown, plain) = surface(s)?;
+            (
+                format!("focus_{plain}"),
+                format!("the state that satisfies the instantaneous constraints of {shown}"),
                 Takes::State,
             )
         }
@@ -202,8 +215,10 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
         _ => return None,
     };
     let mut lines = Lines::of(function, form.dimension())?;
-    if matches!(kernel, Kernel::Blow(_)) {
-        strike(&mut lines, form);
+    match kernel {
+        Kernel::Blow(_) => strike(&mut lines, form),
+        Kernel::Focus(_) => push(&mut lines, form),
+        _ => {}
     }
     Some(Routine {
         name,
@@ -239,6 +254,22 @@ fn outputs(model: &Model) -> String {
     });
     let names: Vec<String> = names.collect();
     format!("the declared outputs: {}", names.join(", "))
+}
+
+fn kernels_of(form: &FormOf<'_>) -> impl Iterator<Item = Kernel> {
+    let kernels = form.program.kernels().into_iter();
+    kernels.map(|(kernel, _)| kernel)
+}
+
+/// Replaces an impulse by the state after it.
+fn push(lines: &mut Lines, form: &FormOf<'_>) {
+    let n = form.dimension();
+    let impulse = core::mem::take(&mut lines.outputs);
+    let mut after: Vec<Operand> = (0..n).map(Operand::State).collect();
+    for (place, &change) in impulse.iter().enumerate() {
+        after.push(lines.add("+", vec![Operand::State(n + place), change]));
+    }
+    lines.outputs = after;
 }
 
 /// Replaces the results of an impact law (size, share and direction of its impulse) by the state after the impact.

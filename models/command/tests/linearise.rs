@@ -511,6 +511,17 @@ fn a_kink_at_an_equilibrium_leaves_its_stability_open() {
             found.output
         );
     }
+    // All derivatives of a rate are 0 at the equilibrium.
+    let flat =
+        "M { coordinates { x; y; } field { dot(x) = y^2; dot(y) = y; } initial { until = 1; } }";
+    let found = run_on(flat, "linearise -");
+    assert!(
+        found
+            .output
+            .contains("unstable: 1 eigenvalue has a positive real part"),
+        "{}",
+        found.output
+    );
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::hits::{Hits, Order};
 use super::impulse::Impacts;
 use super::quiet::{energy_size, quieten_beside};
 use super::strike::STILL;
+use super::watch::measured;
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::law::Law;
@@ -194,19 +195,26 @@ impl<Sys: Impacting> Impacts<Sys> {
             let rate = rates.as_slice()[surface];
             hits.set_still(surface, STILL * rate.abs());
             let struck = self.struck(now.system, surface, rate, now.t, &state)?;
-            if now.system.position(&struck.after) != now.system.position(&state) {
-                // A reset has left the corner.
-                return Ok(Some(struck.after));
-            }
             let before = (state, rates);
             (state, rates) = (struck.after, struck.rates);
-            hits.set_still(surface, -rates.as_slice()[surface]);
-            let there = Moment {
+            let has_moved = now.system.position(&state) != now.system.position(&before.0);
+            if has_moved && now.system.mode(&state) != now.system.mode(&before.0) {
+                return Ok(Some(state));
+            }
+            let mut there = Moment {
                 system: now.system,
                 t: now.t,
                 state: &mut state,
                 counters: now.counters,
             };
+            if has_moved {
+                // A reset leads elsewhere, where other surfaces may still be at hand.
+                let gaps = measured(&mut there)?;
+                hits.replace(self.watch.at_hand(&gaps, &rates, &mut there));
+                hits.set_done(surface);
+                continue;
+            }
+            hits.set_still(surface, -rates.as_slice()[surface]);
             quieten_beside(&mut hits, surface, [&before.1, &rates], &before.0, &there)?;
             self.watch.add_touching(&mut hits, &rates, now)?;
         }

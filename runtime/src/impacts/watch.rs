@@ -263,7 +263,18 @@ impl<Sys: Impacting> Watch<Sys> {
         self.grazes.fill(Graze::None);
         self.bends = gaps.zeroed();
         (self.gaps, self.here) = (gaps, Some(gaps));
-        let mut at_hand = PerSurface::all(&gaps, false);
+        hits.replace(self.at_hand(&gaps, rates, now));
+        Ok(())
+    }
+
+    /// True for the surfaces at hand, at a position with these gaps.
+    pub(super) fn at_hand(
+        &self,
+        gaps: &Sys::Gaps,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+    ) -> PerSurface<bool, Sys::Gaps> {
+        let mut at_hand = PerSurface::all(gaps, false);
         for (surface, &gap) in gaps.as_slice().iter().enumerate() {
             if now.system.surface_active(surface, now.t, now.state) {
                 // At a kink the gap has no rate, which `f64::max` drops.
@@ -274,8 +285,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
             }
         }
-        hits.replace(at_hand);
-        Ok(())
+        at_hand
     }
 
     /// In a mode that was just entered, a passable surface at hand counts as settled: the motion entered there.
@@ -636,7 +646,7 @@ impl<Sys: Impacting> Watch<Sys> {
 }
 
 /// Gaps at a moment; fails if one is not finite.
-fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
+pub(super) fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
     now.counters.event_evaluations += 1;
     finite(now.system, now.system.gaps(now.t, now.state))
 }

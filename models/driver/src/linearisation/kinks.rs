@@ -34,40 +34,69 @@ pub(super) fn kinks<S: Instance + Variational>(
             0.0 => 1.0,
             value => value.abs(),
         };
-        let jump = |k: u32| {
+        let jumps = |k: u32| {
             let distance = size * DECADE.powi(k as i32);
-            jump(&slopes(distance)?, &slopes(-distance)?)
+            let pair = [slopes(distance)?, slopes(-distance)?];
+            Some(pair[0].iter().zip(&pair[1]).map(Jump::of_row).collect())
         };
-        let jumps: Vec<f64> = (1..=DECADES).map(|k| jump(k).unwrap_or(f64::NAN)).collect();
-        stays(&jumps)
+        let jumps: Vec<Vec<Jump>> = (1..=DECADES)
+            .map(|k| jumps(k).unwrap_or_default())
+            .collect();
+        let of_row = |row: usize| -> Vec<Jump> {
+            let jumps = jumps.iter().map(|rows| rows.get(row).copied());
+            jumps.map(Option::unwrap_or_default).collect()
+        };
+        let rows = jumps.iter().map(Vec::len).max().unwrap_or(0);
+        (0..rows).any(|row| stays(&of_row(row)))
     };
     (0..state.len()).filter(is_kinked).collect()
 }
 
-/// The largest difference between rows of derivatives on both sides, relative to the largest derivative in its row.
-fn jump(above: &[Vec<f64>], below: &[Vec<f64>]) -> Option<f64> {
-    let of_row = |(above, below): (&Vec<f64>, &Vec<f64>)| {
-        let size = largest(above.iter().chain(below));
+/// A difference between derivatives on both sides.
+#[derive(Debug, Clone, Copy)]
+struct Jump {
+    size: f64,
+    /// The size relative to the largest derivative in the row, on both sides. Where a smooth row is 0, it stays, and the size falls.
+    relative: f64,
+}
+
+impl Default for Jump {
+    fn default() -> Self {
+        Self {
+            size: f64::NAN,
+            relative: f64::NAN,
+        }
+    }
+}
+
+impl Jump {
+    /// The largest difference between two rows.
+    fn of_row((above, below): (&Vec<f64>, &Vec<f64>)) -> Self {
+        let all = largest(above.iter().chain(below));
         let apart = above
             .iter()
             .zip(below)
             .map(|(above, below)| (above - below).abs());
-        match size {
+        let size = apart.fold(0.0, larger);
+        let relative = match all {
             0.0 => 0.0,
-            size => apart.fold(0.0, larger) / size,
-        }
-    };
-    let rows = above.iter().zip(below).map(of_row);
-    let found = rows.fold(0.0, larger);
-    found.is_finite().then_some(found)
+            all => size / all,
+        };
+        Self { size, relative }
+    }
+
+    fn is_visible(&self) -> bool {
+        self.relative > JUMP
+    }
 }
 
 /// True if a jump, at distances that fall by a factor of ten each, is the same for at least two of them in a row, and does
 /// not fall with the distance afterwards. A smooth function that varies over a short distance has a jump that stays and then
 /// falls; the jump at a kink stays until rounding hides it.
-fn stays(jumps: &[f64]) -> bool {
-    let is_level = |pair: &[f64]| pair[0] > JUMP && (0.5..=2.0).contains(&(pair[1] / pair[0]));
-    let falls = |pair: &[f64]| pair[0] > JUMP && FALL.contains(&(pair[1] / pair[0]));
+fn stays(jumps: &[Jump]) -> bool {
+    let ratio = |pair: &[Jump]| pair[1].size / pair[0].size;
+    let is_level = |pair: &[Jump]| pair[0].is_visible() && (0.5..=2.0).contains(&ratio(pair));
+    let falls = |pair: &[Jump]| pair[0].is_visible() && FALL.contains(&ratio(pair));
     let Some(last) = jumps.windows(2).rposition(is_level) else {
         return false;
     };
