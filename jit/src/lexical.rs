@@ -24,6 +24,31 @@ const MEANT: [(char, &str); 18] = [
     ('\u{221e}', "inf"),
 ];
 
+/// Characters of other notations, with the help for them.
+const EXPLAINED: [(char, &str); 3] = [
+    ('\'', "the velocity of `theta` is written `dot(theta)`"),
+    (
+        '\\',
+        "names and functions are written without it: `dot(theta)`, `sqrt(x)`",
+    ),
+    (
+        '\u{b0}',
+        "angles are in radians: 30 degrees are `30*pi/180`",
+    ),
+];
+
+/// The help for a character that is not part of the language; `None` for any other.
+fn help(character: char) -> Option<String> {
+    let found = |list: &[(char, &'static str)]| {
+        let mut entries = list.iter();
+        entries.find_map(|&(known, text)| (known == character).then_some(text))
+    };
+    let explained = found(&EXPLAINED).map(|text| format!("\n{text}"));
+    let meant = || found(&MEANT).map(|meant| format!("\nwrite `{meant}`"));
+    let foreign = || is_foreign(character).then(String::new);
+    explained.or_else(meant).or_else(foreign)
+}
+
 /// The first mistake: its bytes, and what is wrong.
 pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
     let mut open: Vec<(usize, char)> = Vec::new();
@@ -74,16 +99,15 @@ pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
                     return Some((begin..begin + 1, fault));
                 }
             },
-            _ if MEANT.iter().any(|(known, _)| *known == character) || is_foreign(character) => {
-                let meant = MEANT.iter().find(|(known, _)| *known == character);
-                let help = meant.map_or(String::new(), |(_, meant)| format!("\nwrite `{meant}`"));
-                let code = u32::from(character);
-                let fault = format!(
-                    "the character `{character}` (U+{code:04X}) is not part of the language{help}"
-                );
-                return Some((bytes, fault));
+            _ => {
+                if let Some(help) = help(character) {
+                    let code = u32::from(character);
+                    let fault = format!(
+                        "the character `{character}` (U+{code:04X}) is not part of the language{help}"
+                    );
+                    return Some((bytes, fault));
+                }
             }
-            _ => {}
         }
     }
     let (begin, bracket) = open.pop()?;
@@ -160,6 +184,9 @@ mod tests {
         assert!(told("P { x\u{2212}y }").1.contains("write `-`"));
         assert!(told("P { x\u{b2} }").1.contains("write `^2`"));
         assert!(told("P { x \u{1f600} y }").1.contains("U+1F600"));
+        assert!(told("P { theta'^2 }").1.contains("is written `dot(theta)`"));
+        assert!(told("P { \\dot{x} }").1.contains("written without it"));
+        assert!(told("P { 30\u{b0} }").1.contains("`30*pi/180`"));
     }
 
     #[test]

@@ -94,6 +94,14 @@ fn a_file_with_several_models_needs_a_name() {
         "{}",
         unknown.errors
     );
+    let missing = run("simulate skate.da");
+    assert!(
+        missing.errors.contains(
+            "there is no file `skate.da`; the name of a file with models ends with `.dal`"
+        ),
+        "{}",
+        missing.errors
+    );
     let found = run(&format!("derive {both}:other"));
     assert_eq!(found.exit, Exit::Reached, "{}", found.errors);
 }

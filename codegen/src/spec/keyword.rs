@@ -116,7 +116,9 @@ const FOREIGN_FUNCTIONS: [(&str, &str); 28] = [
 ];
 
 /// Functions that are not differentiable and are refused in expressions.
-const NOT_DIFFERENTIABLE: [&str; 9] = [
+const NOT_DIFFERENTIABLE: [&str; 11] = [
+    "clamp",
+    "clip",
     "max",
     "min",
     "floor",

@@ -160,7 +160,7 @@ pub(super) fn constraint(
 ) -> ConstraintInfo {
     ConstraintInfo {
         name: name(&declared.name.display),
-        affine: !model.pool.is_syntactic_zero(declared.affine),
+        affine: declared.nonlinear.is_none() && !model.pool.is_syntactic_zero(declared.affine),
         level,
     }
 }

@@ -22,6 +22,12 @@ pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliE
             place: "MODEL".to_owned(),
             reason: format!("unknown model `{name}`; the file is named `{file}`"),
         },
+        None if name.contains('.') => CliError::Input {
+            place: "MODEL".to_owned(),
+            reason: format!(
+                "there is no file `{name}`; the name of a file with models ends with `.dal`"
+            ),
+        },
         None => unknown,
     })?;
     Ok(&models[place])

@@ -45,7 +45,7 @@ pub struct ParameterInfo {
 pub struct ConstraintInfo {
     /// Declared name.
     pub name: &'static str,
-    /// True if it has an affine part `eta_0`.
+    /// True if it is linear in the velocities with an affine part `eta_0`.
     pub affine: bool,
     /// Index among the position levels; `None` unless the constraint is integrable with a known level.
     pub level: Option<usize>,

@@ -173,7 +173,12 @@ pub(super) fn law(cursor: &mut Cursor<'_>, spec: &mut Spec, form: &str) -> Read<
         return Ok(None);
     }
     if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
-        let help = format!("the laws are {}", listed(LAWS.map(|(law, _)| law)));
+        let help = match cursor.peek() {
+            Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+                "a map of the state is written `=> reset { dot(x) = -dot(x); }`".to_owned()
+            }
+            _ => format!("the laws are {}", listed(LAWS.map(|(law, _)| law))),
+        };
         return Err(cursor.unexpected("expected an impact law", &help));
     }
     let name = cursor.name("an impact law")?;

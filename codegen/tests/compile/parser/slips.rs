@@ -104,6 +104,10 @@ fn surfaces_have_one_comparison_and_an_arrow_before_the_law() {
         "expected an impact law, found `0.5`\nhelp: the laws are `elastic`",
     );
     refused_in(
+        &surface("x >= 0 => «{ dot(x) = -dot(x); }»"),
+        "expected an impact law, found `{..}`\nhelp: a map of the state is written `=> reset { dot(x) = -dot(x); }`",
+    );
+    refused_in(
         "view { region: x «>» 0; }",
         "expected `>=` or `<=`, found `>`\nhelp: write `region: h >= 0;`",
     );
