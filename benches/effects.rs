@@ -16,6 +16,7 @@ use dalembert_benches::timing::is_benchmark;
 macro_rules! blade {
     ($name:ident, forces { $($forces:tt)* } impacts { $($impacts:tt)* } scenes { $($scenes:tt)* }) => {
         dalembert::model! {
+            #[global]
             pub $name {
                 coordinates { x; y; theta: angle; }
                 parameters { m > 0 = 1.5; I > 0 = 0.4; a = 0.2; g = 0.7; c >= 0 = 0.3; table > 0 = 1e12; }
@@ -141,13 +142,25 @@ fn rows() -> [Row; 9] {
         row!("everything", blade::Everything::default(), Blade::default()),
         Row {
             name: "free, global form",
-            scene: |steps| work(&blade::Free::default().global(), (), steps),
-            plain: |steps| work(&Free::default().global(), (), steps),
+            scene: |steps| {
+                work(
+                    &blade::Free::default().global().expect("the global form"),
+                    (),
+                    steps,
+                )
+            },
+            plain: |steps| {
+                work(
+                    &Free::default().global().expect("the global form"),
+                    (),
+                    steps,
+                )
+            },
         },
         row!(
             "kept: projection, global form",
-            blade::Kept::default().global(),
-            Kept::default().global()
+            blade::Kept::default().global().expect("the global form"),
+            Kept::default().global().expect("the global form")
         ),
     ]
 }

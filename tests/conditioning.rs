@@ -96,7 +96,7 @@ fn the_rolling_disk_keeps_its_digits_at_every_ratio_of_inertias() {
             [0.0, 0.0],
             "kappa = {kappa:e}: reduced"
         );
-        let global = disk.global();
+        let global = disk.global().expect("the global form");
         let state = global.state(0.0, &disk.position(&state), &qdot.into());
         let state = state.expect("a state");
         let mut rate = state;

@@ -164,7 +164,10 @@ fn a_point_comes_to_rest_between_two_surfaces_that_carry_its_weight() -> Result<
 fn both_forms_slide_along_a_wall_alike() {
     let (q, qdot) = ([0.3, 0.2, 0.4], [0.0, 0.0, 0.8]);
     let ends = |until: f64| {
-        let forms = [SKATE.model(), SKATE.model().global()];
+        let forms = [
+            SKATE.model(),
+            SKATE.model().global().expect("the global form"),
+        ];
         let [(reduced, holds), (whole, others)] = forms
             .each_ref()
             .map(|form| ran(course(form, &q, &qdot, until), Integrator::Dop853, CONTACT));

@@ -110,7 +110,7 @@ impl SameMotion {
         }
         self.models += 1;
         let name = system.description().name;
-        let global = system.global();
+        let global = system.global().expect("the global form");
         let t = 0.3;
         for state in states(system, 10, 5) {
             let (q, qdot) = (system.position(&state), system.velocity(t, &state));
@@ -182,7 +182,7 @@ fn both_forms_are_the_same_motion() {
 #[test]
 fn both_forms_project_to_the_same_velocity() {
     for system in every_system() {
-        let global = system.global();
+        let global = system.global().expect("the global form");
         let mut random = Random::new(9);
         let zero = system.zero_vector();
         let (q, qdot) = (random.like(&zero, 0.2, 1.3), random.like(&zero, -1.0, 1.0));
@@ -221,7 +221,7 @@ fn both_forms_meet_the_same_impacts() {
     ];
     let q = [0.0, 0.0, 0.0, phi];
     let (reduced, last) = run(&disk, &q, &qdot, 20);
-    let (other, global_last) = run(&disk.global(), &q, &qdot, 20);
+    let (other, global_last) = run(&disk.global().expect("the global form"), &q, &qdot, 20);
     assert_eq!((reduced.len(), other.len()), (20, 20));
     for (reduced, other) in reduced.iter().zip(&other) {
         assert!((reduced - other).abs() < 1e-9, "{reduced} and {other}");

@@ -143,7 +143,7 @@ fn the_sleigh_keeps_its_digits_for_small_inertia() {
         // On D the multiplier is a difference of forces of size 1 and has their rounding errors.
         let reduced = sleigh.multipliers(0.0, &state).expect("multipliers");
         let reduced = reduced.as_slice()[0];
-        let sleigh = sleigh.global();
+        let sleigh = sleigh.global().expect("the global form");
         let state = sleigh.state(0.0, &q, &qdot).expect("a state");
         let multiplier = sleigh.multipliers(0.0, &state).expect("multipliers");
         let multiplier = multiplier.as_slice()[0];

@@ -36,6 +36,7 @@ dalembert::model! {
 
 dalembert::model! {
     /// A sleigh on a moving belt, steered and pushed, with a Lagrangian that depends on time.
+    #[global]
     pub Tug {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 2; I > 0 = 1/2; belt = 1/3; c = 1/5; }
@@ -236,7 +237,7 @@ fn constraints_and_time_do_work_too() {
         work.done()
     );
     assert_near("balance", &[gained], &[work.total()], 1e-11);
-    let global = tug.global();
+    let global = tug.global().expect("the global form");
     let qdot = tug.velocity(0.0, &start).expect("a velocity");
     let start = global.state(0.0, &q, &qdot).expect("a state");
     let steered =

@@ -28,8 +28,9 @@ fn loaded_code_is_what_the_interpreter_executes() {
     for system in every_system() {
         let (_, _, programs) = derive(&system.description().source);
         states += compare_motion(system, &programs.main);
-        states += compare_motion(&system.global(), programs.global());
-        compare_report(&system.global(), programs.global());
+        let global = system.global().expect("the global form");
+        states += compare_motion(&global, programs.global());
+        compare_report(&global, programs.global());
     }
     assert!(states >= 100);
 }
@@ -193,7 +194,7 @@ fn programs_are_well_formed() {
 fn assert_constraints_are_kept(system: &Large) -> usize {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
-    let system = system.global();
+    let system = system.global().expect("the global form");
     let mut random = Random::new(3);
     for constraint in &derivation.constraints {
         let zero = system.zero_vector();

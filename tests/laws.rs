@@ -126,9 +126,17 @@ fn blows_are_those_of_the_contact_by_the_declared_law() {
     ] {
         check_blows(&system(name));
     }
-    check_blows(&system("rolling_disk").global());
-    check_blows(&system("chaplygin_sleigh").global());
-    check_blows(&system("rolling_ball_euler").global());
+    check_blows(&system("rolling_disk").global().expect("the global form"));
+    check_blows(
+        &system("chaplygin_sleigh")
+            .global()
+            .expect("the global form"),
+    );
+    check_blows(
+        &system("rolling_ball_euler")
+            .global()
+            .expect("the global form"),
+    );
 }
 
 /// Checks that every law keeps the constraints, including affine ones.

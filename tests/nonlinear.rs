@@ -194,7 +194,7 @@ fn the_force_is_a_multiple_of_the_derivative_by_the_velocities() {
 #[test]
 fn an_affine_constraint_and_its_bent_form_have_the_same_field() {
     let (belt, bent) = (BELT.model(), BENT_BELT.model());
-    let straight = belt.global();
+    let straight = belt.global().expect("the global form");
     for state in states(&straight, 12, 5) {
         let t = 0.7;
         let q = straight.position(&state);

@@ -30,6 +30,7 @@ dalembert::model! {
 
 dalembert::model! {
     /// A sleigh between walls that reflect it as a mirror does. The constraint holds after the reset.
+    #[global]
     pub MirrorSleigh {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 2; I > 0 = 1/3; a = 1/5; }
@@ -111,7 +112,7 @@ fn emitted_resets_are_what_the_interpreter_executes() {
         let programs = compile(source.parse().expect("tokens"))
             .expect("a model")
             .programs;
-        let global = system.global();
+        let global = system.global().expect("the global form");
         compare_report(&global, programs.global());
         compare(system, &programs.main) + compare(&global, programs.global())
     }
@@ -157,7 +158,7 @@ fn run(
 #[test]
 fn both_forms_go_the_same_way_through_resets_of_positions() {
     let sleigh = MIRROR_SLEIGH.model();
-    let global = sleigh.global();
+    let global = sleigh.global().expect("the global form");
     let (q, qdot) = ([0.5, 0.0, 0.4], [0.4_f64.cos(), 0.4_f64.sin(), 0.7]);
     let reduced = run(&sleigh, &q, &qdot, 12.0);
     let whole = run(&global, &q, &qdot, 12.0);

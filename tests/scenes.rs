@@ -122,6 +122,10 @@ fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
     let (of_scene, of_plain) = (&compile(&scene).scenes[0], &compile(&plain));
     assert_eq!(kernels(of_scene), kernels(of_plain), "{uses}");
     assert_eq!(tables(of_scene), tables(of_plain), "{uses}");
+    let [plain, scene] = [plain, scene].map(|source| match body {
+        TWISTED => source,
+        _ => format!("#[global] {source}"),
+    });
     for [type_name, plain_name] in [["Only", "P"], ["OnlyGlobal", "PGlobal"]] {
         if plain_name == "PGlobal" && body == TWISTED {
             continue;

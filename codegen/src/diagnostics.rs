@@ -197,6 +197,15 @@ pub(crate) fn too_many_steps(at: Location) -> Diagnostics {
     diagnostics
 }
 
+/// The error for `#[global]` before a model with modes.
+pub fn global_of_modes(at: Location) -> Diagnostics {
+    let mut diagnostics = Diagnostics::new();
+    diagnostics
+        .error(at, "the modes of a model always have their global forms")
+        .help("leave out `#[global]`");
+    diagnostics
+}
+
 /// The text with a help line. An empty help adds nothing.
 fn with_help(text: String, help: impl fmt::Display) -> String {
     let help = help.to_string();

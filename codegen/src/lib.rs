@@ -130,7 +130,25 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
             Err(others) => mistakes.extend(others),
         }
     }
+    refuse_needless_global(spec, &compiled, &mut mistakes);
     mistakes.finish(compiled)
+}
+
+/// Refuses `#[global]` where neither the model nor a scene has another form.
+fn refuse_needless_global(
+    spec: &spec::Spec,
+    compiled: &Compiled,
+    mistakes: &mut diagnostics::Diagnostics,
+) {
+    let mut all = core::iter::once(compiled).chain(&compiled.scenes);
+    let is_needed = all.any(|compiled| compiled.programs.global.is_some());
+    if let Some(at) = spec.global.filter(|_| !is_needed) {
+        let text = format!(
+            "`{}` has no reduced form: it is in its global form already",
+            spec.name.text
+        );
+        mistakes.error(at, text).help("leave out `#[global]`");
+    }
 }
 
 /// The extremals of a model with a cost, in one of its scenes, as a first-order model after all stages: see

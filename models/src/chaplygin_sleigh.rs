@@ -5,4 +5,7 @@
 //! of mass is ahead.
 //! Source: W. Clark, thesis, section 7.5; W. Clark and A. Bloch, section 8.1.
 
-dalembert::model_file!("src/chaplygin_sleigh.dal");
+dalembert::model_file!(
+    #[global]
+    "src/chaplygin_sleigh.dal"
+);

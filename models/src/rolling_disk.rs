@@ -4,4 +4,7 @@
 //! `|R dot(theta)/dot(phi)|`. On a circular table the pair of rates alternates between two values.
 //! Source: W. Clark, thesis, section 6.4 (Figures 6.2 to 6.4: `ta = tb = 0.2` and `ta = 0.15`).
 
-dalembert::model_file!("src/rolling_disk.dal");
+dalembert::model_file!(
+    #[global]
+    "src/rolling_disk.dal"
+);

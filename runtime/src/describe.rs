@@ -60,8 +60,9 @@ pub trait Instance: System + Clone {
     /// for a model that has no form reduced to D.
     type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene;
 
-    /// The system in its global form.
-    fn global(&self) -> Self::Global;
+    /// The system in its global form. `None` for a reduced model whose declaration does not ask for this form with
+    /// `#[global]`. Models without a reduced form, modes, and models loaded from a text always have it.
+    fn global(&self) -> Option<Self::Global>;
 
     /// Value of parameter `index` in [`Description::parameters`]; NaN past the end.
     fn parameter(&self, index: usize) -> f64;
@@ -93,7 +94,8 @@ pub trait Instance: System + Clone {
     /// Reports all derived quantities at a state, by name (see [`Report`]).
     ///
     /// # Errors
-    /// A [`Fault`] where the equations of motion do not exist.
+    /// A [`Fault`] where the equations of motion do not exist; [`Fault::NotDerived`] for a system without its
+    /// [global form](Instance::global).
     fn inspect(&self, t: f64, state: &Self::State, report: &mut dyn Report) -> Result<(), Fault>;
 
     /// Reports the quantities that exist only in the frame of D: quasi-velocities and their rates, `X_0`, the rows

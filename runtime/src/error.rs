@@ -40,7 +40,8 @@ pub enum Fault {
         /// Index of the surface.
         surface: usize,
     },
-    /// The called function was not derived for this system.
+    /// The called function was not derived for this system, such as a function of a global form that the declaration does
+    /// not ask for.
     NotDerived,
     /// Momenta, an energy or an impulse were requested of a first-order system, which has none.
     FirstOrder,
@@ -119,7 +120,11 @@ impl fmt::Display for Fault {
                 "a step of a discrete principle, or a state from positions and velocities, belongs to one mode, and the \
                  system has several"
             ),
-            Self::NotDerived => write!(f, "the called function was not derived for this system"),
+            Self::NotDerived => write!(
+                f,
+                "the called function was not derived for this system; what needs the global form asks for it with \
+                 `#[global]` before the model"
+            ),
             Self::FirstOrder => {
                 write!(
                     f,

@@ -184,7 +184,7 @@ pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), Parameter
 /// Reports the derived quantities of a state, computed in the global form.
 ///
 /// # Errors
-/// The first [`Fault`] of the global form at this state.
+/// The first [`Fault`] of the global form at this state; [`Fault::NotDerived`] without a global form.
 pub fn inspect_globally<S: Instance>(
     system: &S,
     t: f64,
@@ -192,7 +192,7 @@ pub fn inspect_globally<S: Instance>(
     report: &mut dyn Report,
 ) -> Result<(), Fault> {
     let (q, qdot) = (system.position(state), system.velocity(t, state)?);
-    let global = system.global();
+    let global = system.global().ok_or(Fault::NotDerived)?;
     let state = global.state_unchecked(t, &q, &qdot)?;
     global.inspect(t, &state, report)
 }

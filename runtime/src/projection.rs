@@ -30,7 +30,7 @@ const NEWTON_STEPS: u32 = 8;
 /// # Examples
 ///
 /// ```
-/// use dalembert::{Constrained, Dop853, Instance, Projection, Simulation, System, Tolerance};
+/// use dalembert::{Constrained, Dop853, Projection, Simulation, System, Tolerance};
 ///
 /// dalembert::model! {
 ///     pub Bead {
@@ -40,8 +40,8 @@ const NEWTON_STEPS: u32 = 8;
 ///     }
 /// }
 ///
-/// // The form on all of T*Q. Its states may violate the constraints.
-/// let bead = Bead::default().global();
+/// // No frame is regular at the origin, so the form is that on all of T*Q. Its states may violate the constraints.
+/// let bead = Bead::default();
 /// let state = bead.state(0.0, &[1.0, 0.0].into(), &[0.0, 1.0].into())?;
 /// let integrator = Dop853::new(Tolerance::new(1e-6)?);
 /// let run = Simulation::new(&bead, integrator, Projection::new()).run(0.0, state, 10.0, &mut ())?;

@@ -77,7 +77,7 @@ impl Contradicted {
 /// Asserts that a claim holds at random states. It is called if the refutation of a contradiction shows no numbers.
 fn holds_numerically(system: &Large, claim: &str, message: &str) {
     let (head, value) = claim.split_once(':').expect("a claim");
-    for state in states(&system.global(), 5, 31) {
+    for state in states(&system.global().expect("the global form"), 5, 31) {
         let state = state.as_slice();
         let here = system.snapshot(0.3, state);
         let size = 1.0 + here.energy.abs();

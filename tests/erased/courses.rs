@@ -2,10 +2,10 @@
 //! called by pointers, loaded from its text, or, for two models, inlined. Counters, impacts, contacts and final states
 //! are the same to the bit.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use dalembert::Policies;
 use dalembert::describe::Description;
+use dalembert::{Policies, erased};
 use dalembert_driver::{
     AnyModel, Code, Contact, Ending, Form, Impact, Integrator, OffConstraint, Origin, Piece, Rates,
     Settings, Watch, of_form, of_type,
@@ -118,7 +118,8 @@ fn compare_loaded(compiled: &Compiled) {
             Form::Reduced,
             &format!("{name} {scene}"),
         );
-        if modes.is_empty() && index == 0 {
+        let has_global = compiled.emitted[index].1.global().is_some();
+        if modes.is_empty() && index == 0 && has_global {
             compare(
                 &*emitted,
                 &*loaded,
@@ -138,11 +139,19 @@ fn a_loaded_model_runs_as_the_compiled_one() {
 fn a_model_behind_pointers_runs_as_its_own_type() {
     macro_rules! compare_inlined {
         ($($model:ty),*) => {$({
-            let inlined = of_type::<$model>();
+            let whole = OnceLock::<Arc<erased::Form>>::new();
+            let whole = Arc::new(whole);
+            let given = Arc::clone(&whole);
+            let inlined = of_type::<$model>(Arc::new(move || Some(given.get()?.clone().into())));
             let name = inlined.description().name;
             let mut models = compared().iter();
             let compiled = models.find(|compiled| compiled.description.name == name);
-            let (_, form) = compiled.expect("a model").emitted[0];
+            let compiled = compiled.expect("a model");
+            let loaded = Arc::clone(compiled.loaded(0));
+            assert!(whole.set(Arc::clone(&loaded)).is_ok());
+            let loaded = of_form(loaded.into(), Code::Loaded).expect("room");
+            compare(&*inlined, &*loaded, Form::Global, name);
+            let (_, form) = compiled.emitted[0];
             let erased = of_form(form.into(), Code::Pointers).expect("room");
             compare(&*inlined, &*erased, Form::Reduced, name);
         })*};

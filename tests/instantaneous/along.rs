@@ -164,5 +164,5 @@ fn check_trace(system: &Model) {
 #[test]
 fn the_trace_keeps_the_instantaneous_constraints() {
     check_trace(&TIP.model());
-    check_trace(&TIP.model().global());
+    check_trace(&TIP.model().global().expect("the global form"));
 }

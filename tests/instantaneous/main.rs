@@ -67,6 +67,7 @@ static RAIL: Text = Text::new(
 
 dalembert::model! {
     /// A knife edge. At an impact, its tip sticks to a curved wall in a direction that depends on the state.
+    #[global]
     pub Tip {
         coordinates { x; y; theta: angle; z; }
         parameters { m > 0 = 2; I > 0 = 1/3; a > 0 = 1/4; }
@@ -162,10 +163,10 @@ fn check_ball(system: &Large, variant: &str) -> usize {
 fn a_ball_leaves_a_wall_without_slip_as_the_references_say() {
     let ball: Large = shipped("rolling_ball_wall").sized();
     assert!(check_ball(&ball, "physical") >= 4);
-    check_ball(&ball.global(), "physical");
+    check_ball(&ball.global().expect("the global form"), "physical");
     let printed: Large = PRINTED_WALL.sized();
     check_ball(&printed, "printed");
-    check_ball(&printed.global(), "printed");
+    check_ball(&printed.global().expect("the global form"), "printed");
 }
 
 /// Random states of `Tip` on its wall that approach the wall.
@@ -241,7 +242,7 @@ fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() 
         let after = struck(&tip, Law::Newton(0.25), before);
         let actual = tip.velocity(0.0, &after).expect("a velocity");
         assert_near("newton", actual.as_ref(), &expected, 1e-13);
-        let global = tip.global();
+        let global = tip.global().expect("the global form");
         let qdot = tip.velocity(0.0, &before).expect("one");
         let state = global.state_unchecked(0.0, &vector(q), &qdot);
         let after = struck(&global, Law::Newton(0.25), state.expect("a state"));
@@ -349,7 +350,7 @@ fn check_emission<S: Described + Impacting>(system: &S, program: &Program) {
 fn emitted_functions_are_what_the_interpreter_executes() {
     let compiled = compile(Tip::DESCRIPTION.source.parse().expect("tokens")).expect("a model");
     check_emission(&Tip::default(), &compiled.programs.main);
-    check_emission(&Tip::default().global(), compiled.programs.global());
+    check_emission(&TipGlobal(Tip::default()), compiled.programs.global());
 }
 
 #[test]

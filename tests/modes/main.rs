@@ -356,7 +356,10 @@ fn check_emitted<M: Described<Global: TaylorField> + TaylorField>(
     mode: &dalembert_codegen::Compiled,
 ) {
     let system = M::with_defaults();
-    let global = compare_motion(&system.global(), mode.programs.global());
+    let global = compare_motion(
+        &system.global().expect("the global form"),
+        mode.programs.global(),
+    );
     assert!(compare_motion(&system, &mode.programs.main) + global > 0);
 }
 

@@ -40,10 +40,12 @@ fn source() -> String {
         "//! Declarations drawn at random by `tests/random/emitted.rs`; `ACCEPT=1` draws them anew.\n",
     );
     for (k, declaration) in drawn().iter().enumerate() {
-        let body = declaration
-            .named(&format!("Random{k}"))
-            .replace('\n', "\n    ");
-        write!(text, "\ndalembert::model! {{\n    {body}\n}}\n").expect("a text");
+        let declared = declaration.named(&format!("Random{k}"));
+        let compiled = dalembert_codegen::compile(declared.parse().expect("tokens"));
+        let global = compiled.expect("a model").programs.global;
+        let attribute = global.map_or("", |_| "#[global]\n    ");
+        let body = declared.replace('\n', "\n    ");
+        write!(text, "\ndalembert::model! {{\n    {attribute}{body}\n}}\n").expect("a text");
     }
     text
 }
@@ -61,8 +63,9 @@ fn check<S: Described>(system: &S) {
     let compiled = dalembert_codegen::compile(tokens).expect("a model");
     let (main, global) = (&compiled.programs.main, compiled.programs.global());
     compare_motion(system, main);
-    compare_motion(&system.global(), global);
-    compare_report(&system.global(), global);
+    let system = system.global().expect("the global form");
+    compare_motion(&system, global);
+    compare_report(&system, global);
 }
 
 macro_rules! check_all {

@@ -11,6 +11,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random1 {
         coordinates { x2: angle; x3; x0: angle; x1; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }
@@ -21,6 +22,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random2 {
         coordinates { x0; x1: angle; x2; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }
@@ -41,6 +43,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random4 {
         coordinates { x1: angle; x2; x3; x0: angle; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }
@@ -62,6 +65,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random6 {
         coordinates { x0; x1: angle; x2; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }
@@ -92,6 +96,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random9 {
         coordinates { x0; x1: angle; x2; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }
@@ -102,6 +107,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    #[global]
     pub Random10 {
         coordinates { x1; x0: angle; }
         parameters { a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3; }

@@ -62,7 +62,7 @@ fn residual(system: &Large, state: State, mut stepper: impl Stepper<Large>, unti
 
 /// Checks the global form of a system.
 fn check(name: &str, until: f64) {
-    let system = &system(name).global();
+    let system = &system(name).global().expect("the global form");
     let tolerance = Tolerance::new(1e-9).expect("a tolerance");
     for state in states(system, 3, 11) {
         let second = Dla2::new(tolerance).with_step(0.01);
@@ -98,7 +98,9 @@ fn constraints_hold_to_rounding_at_the_ends_of_steps() {
 
 #[test]
 fn other_methods_leave_the_constraints_by_their_error() {
-    let sleigh = system("chaplygin_sleigh").global();
+    let sleigh = system("chaplygin_sleigh")
+        .global()
+        .expect("the global form");
     let state = states(&sleigh, 1, 11)[0];
     let stepper = Gauss4::new(Tolerance::new(1e-9).expect("a tolerance")).with_step(0.5);
     assert!(residual(&sleigh, state, stepper, 100.0) > 1e-8);
@@ -106,7 +108,7 @@ fn other_methods_leave_the_constraints_by_their_error() {
 
 #[test]
 fn levels_of_quadratic_constraints_hold_to_rounding() {
-    let bead = system("integrable_bead").global();
+    let bead = system("integrable_bead").global().expect("the global form");
     let state = states(&bead, 1, 3)[0];
     let mut stepper = Dla2::new(Tolerance::new(1e-9).expect("a tolerance")).with_step(0.05);
     let run = Simulation::new(&bead, Chosen::new(&mut stepper), ())
@@ -118,7 +120,9 @@ fn levels_of_quadratic_constraints_hold_to_rounding() {
 
 #[test]
 fn a_start_off_the_constraints_is_brought_to_them() {
-    let sleigh = system("chaplygin_sleigh").global();
+    let sleigh = system("chaplygin_sleigh")
+        .global()
+        .expect("the global form");
     let state = sleigh
         .state_unchecked(0.0, &Bounded::of(&[0.0; 3]), &Bounded::of(&[1.0, 0.5, 0.3]))
         .expect("a state");

@@ -107,26 +107,26 @@ impl<S: Instance> Numeric for S {
     }
 
     fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
-        let global = self.global();
+        let global = self.global().expect("the global form");
         let state = global.state_unchecked(t, &vector(q), &vector(qdot));
         state.expect("a state").as_slice().to_vec()
     }
 
     fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64> {
-        let global = self.global();
+        let global = self.global().expect("the global form");
         let state = global.state_projected(t, &vector(q), &vector(qdot));
         state.expect("a state").as_slice().to_vec()
     }
 
     fn rate(&self, t: f64, state: &[f64]) -> Vec<f64> {
-        let global = self.global();
+        let global = self.global().expect("the global form");
         let mut rate = global.zero_state();
         VectorField::rate(&global, t, &vector(state), &mut rate).expect("a rate");
         rate.as_slice().to_vec()
     }
 
     fn snapshot(&self, t: f64, state: &[f64]) -> Snapshot {
-        let (global, state) = (self.global(), vector(state));
+        let (global, state) = (self.global().expect("the global form"), vector(state));
         let list = |vector: S::Vector| vector.as_slice().to_vec();
         Snapshot {
             t,
@@ -140,6 +140,7 @@ impl<S: Instance> Numeric for S {
     fn report(&self, t: f64, state: &[f64]) -> Reported {
         let mut reported = Reported::default();
         self.global()
+            .expect("the global form")
             .inspect(t, &vector(state), &mut reported)
             .expect("a report");
         reported
@@ -148,7 +149,7 @@ impl<S: Instance> Numeric for S {
     fn impact(&self, surface: &str, law: Law, t: f64, state: &[f64]) -> Vec<f64> {
         let report = Numeric::report(self, t, state);
         let of = |name: &str| report.number(&format!("impacts.{surface}.{name}"));
-        let global = self.global();
+        let global = self.global().expect("the global form");
         let contact = Contact::<<S::Global as System>::Impulse> {
             gap_rate: of("gap_rate"),
             constrained_rate: of("constrained_rate"),

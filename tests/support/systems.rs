@@ -9,6 +9,7 @@ use dalembert_stability::text::Text;
 
 dalembert::model! {
     /// Chaplygin sleigh on a support with a cross flow: affine constraint.
+    #[global]
     pub AffineSleigh {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; I > 0 = 1; a = 1/5; len > 0 = 1/4; ta > 0 = 2; tb > 0 = 1; }
@@ -127,6 +128,7 @@ dalembert::model! {
 
 dalembert::model! {
     /// A rolling ball with its centre of mass off its centre (Routh). Its density is not of a searched kind.
+    #[global]
     pub RouthSphere {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }

@@ -10,16 +10,23 @@ use dalembert_codegen::program::Form;
 
 /// `impl Documented`, and `impl Emitted` with the constants of the form.
 pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream {
-    let (type_name, global_name) = (&context.names.type_name, &context.names.global);
+    let type_name = &context.names.type_name;
     let model = context.form.model;
     let defaults = match &context.names.held {
         Some(held) => quote!(Self(<#held as ::dalembert::Described>::with_defaults())),
         None => parameters::with_defaults(model),
     };
-    let (global_type, global) = match context.form.program.form {
-        Form::Global | Form::FirstOrder => (quote!(Self), quote!(*self)),
-        Form::Reduced => (quote!(#global_name), quote!(#global_name(*self))),
-    };
+    let (global_type, global, is_left_out) =
+        match (&context.names.global, context.form.program.form) {
+            (Some(global), _) => (quote!(#global), quote!(Some(#global(*self))), false),
+            (None, Form::Reduced) => (quote!(Self), quote!(None), true),
+            (None, Form::Global | Form::FirstOrder) => (quote!(Self), quote!(Some(*self)), false),
+        };
+    let has_global = is_left_out.then(|| {
+        quote!(
+            const HAS_GLOBAL: bool = false;
+        )
+    });
     let set = match &context.names.held {
         Some(held) => {
             quote!(<#held as ::dalembert::describe::Instance>::set_parameter(&mut self.0, index, value);)
@@ -38,13 +45,17 @@ pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>)
             type Geometry = [f64; #numbers];
             type Global = #global_type;
 
+            #has_global
+
             #[inline]
             fn documentation(&self) -> &'static ::dalembert::kernels::Documentation {
                 <Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
             }
 
             #[inline]
-            fn globally(&self) -> Self::Global { #global }
+            fn globally(&self) -> ::core::option::Option<Self::Global> {
+                ::core::option::Option::#global
+            }
 
             fn set_argument(&mut self, index: usize, value: f64) { #set }
 

@@ -1,12 +1,12 @@
-//! Models of a file: `model_file!("src/disk.dal")`.
+//! Models of a file: `model_file!("src/disk.dal")`, or `model_file!(#[global] "src/disk.dal")`.
 
 use std::path::{Path, PathBuf};
 
 use dalembert_codegen::models_of;
-use proc_macro2::TokenStream;
+use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 
-use dalembert_codegen::diagnostics::{Diagnostics, Location};
+use dalembert_codegen::diagnostics::{Diagnostics, Location, global_of_modes};
 use dalembert_codegen::spec::Declaration;
 
 /// The whole pipeline, for the models of a file below a folder.
@@ -23,16 +23,25 @@ struct File {
     at: Location,
     path: PathBuf,
     text: String,
+    /// True if the macro asks for the global form of the model of the file.
+    asks_for_global: bool,
 }
 
 fn read(input: TokenStream, folder: &Path) -> Result<File, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
-    let mut tokens = input.clone().into_iter();
-    let at = tokens.next().map_or_else(
-        || proc_macro2::Span::call_site().into(),
-        |token| Location::of(&token),
-    );
-    let Ok(name) = syn::parse2::<syn::LitStr>(input) else {
+    let tokens: Vec<TokenTree> = input.into_iter().collect();
+    let (asks_for_global, path) = match tokens.as_slice() {
+        [
+            TokenTree::Punct(hash),
+            TokenTree::Group(attribute),
+            path @ ..,
+        ] if hash.as_char() == '#' && attribute.stream().to_string() == "global" => (true, path),
+        path => (false, path),
+    };
+    let at = path
+        .first()
+        .map_or_else(|| proc_macro2::Span::call_site().into(), Location::of);
+    let Ok(name) = syn::parse2::<syn::LitStr>(path.iter().cloned().collect()) else {
         diagnostics
             .error(at, "expected the path of a file, as a string in quotes")
             .help(
@@ -42,7 +51,12 @@ fn read(input: TokenStream, folder: &Path) -> Result<File, Diagnostics> {
     };
     let path = folder.join(name.value());
     match std::fs::read_to_string(&path) {
-        Ok(text) => Ok(File { at, path, text }),
+        Ok(text) => Ok(File {
+            at,
+            path,
+            text,
+            asks_for_global,
+        }),
         Err(error) => {
             let text = format!("`{}` cannot be read: {error}", path.display());
             diagnostics
@@ -68,6 +82,11 @@ impl File {
         if models.is_empty() {
             self.refuse(&mut diagnostics, "no model here");
         }
+        if self.asks_for_global && models.len() > 1 {
+            diagnostics
+                .error(self.at, "`#[global]` before a file with several models")
+                .help("write it in the file, before each model whose global form is needed");
+        }
         let mut items = TokenStream::new();
         for model in models {
             match self.expand_one(model, is_one) {
@@ -87,6 +106,11 @@ impl File {
 
     fn expand_one(&self, model: TokenStream, is_one: bool) -> Result<TokenStream, Diagnostics> {
         let mut declaration = dalembert_codegen::read(model)?;
+        match &mut declaration {
+            _ if !self.asks_for_global => {}
+            Declaration::Model(spec) => spec.global = Some(self.at),
+            Declaration::Modes(_) => return Err(global_of_modes(self.at)),
+        }
         if is_one {
             // NOTE: inside of a macro, tokens of a text have no positions: the source cannot be read back from them.
             let source = self.text.trim().to_owned();

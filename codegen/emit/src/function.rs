@@ -409,7 +409,7 @@ mod tests {
         let names = Names {
             type_name: quote!(Sample),
             model_type: quote!(Sample),
-            global: quote!(Sample),
+            global: None,
             held: None,
             coordinates: ["x", "y", "z"].map(ident).to_vec(),
             momenta: Vec::new(),

@@ -61,6 +61,9 @@ fn expand_declaration(declaration: Declaration) -> Result<TokenStream, Diagnosti
     match declaration {
         Declaration::Model(spec) => {
             let mut compiled = compile_spec(&spec, spec::STEPS)?;
+            if spec.global.is_none() {
+                leave_out_global(&mut compiled);
+            }
             compiled.note_findings();
             compiled.scenes.iter_mut().for_each(Compiled::note_findings);
             Ok(tokens(&compiled))
@@ -73,6 +76,12 @@ fn expand_declaration(declaration: Declaration) -> Result<TokenStream, Diagnosti
     }
 }
 
+/// Leaves out the global forms of a reduced model and of its scenes, for which the declaration does not ask.
+fn leave_out_global(compiled: &mut Compiled) {
+    compiled.programs.global = None;
+    compiled.scenes.iter_mut().for_each(leave_out_global);
+}
+
 /// Input of every emitter.
 struct Context<'a> {
     form: FormOf<'a>,
@@ -80,7 +89,7 @@ struct Context<'a> {
 }
 
 /// The generated items of a model: the items of its type and of the types of its scenes. A type that is reduced to D
-/// also has a type for its global form.
+/// also has a type for its global form, if that form was compiled.
 pub fn tokens(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let contexts = contexts(compiled, &model.scenes, |names| names);
@@ -134,15 +143,18 @@ fn contexts<'a>(
 ) -> Vec<Context<'a>> {
     let model = &compiled.model;
     let names = own_names(Names::of(model, compiled.derivation.frame.as_ref().ok()));
-    let forms = FormOf::all(compiled, scenes).into_iter().enumerate();
-    let context = |(index, form)| Context {
-        form,
-        names: match index {
-            0 => names.clone(),
-            _ => names.of_global(model),
-        },
+    let forms = FormOf::all(compiled, scenes);
+    let names = match forms.len() {
+        1 => vec![names.without_global()],
+        _ => {
+            let of_global = names.of_global(model);
+            vec![names, of_global]
+        }
     };
-    forms.map(context).collect()
+    let contexts = forms.into_iter().zip(names);
+    contexts
+        .map(|(form, names)| Context { form, names })
+        .collect()
 }
 
 /// Contexts of a scene; see [`contexts`].

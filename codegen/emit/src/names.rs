@@ -19,8 +19,8 @@ pub(super) struct Names {
     pub type_name: TokenStream,
     /// The type of the model or the scene itself.
     pub model_type: TokenStream,
-    /// The type of the global form of the model or the scene.
-    pub global: TokenStream,
+    /// The type of the global form of the model or the scene, if it is a separate form and is emitted.
+    pub global: Option<TokenStream>,
     /// The type of the value that `type_name` wraps: a scene wraps its model, a global form wraps a model or a scene.
     /// `None` for the type of a model, which has the parameters itself.
     pub held: Option<TokenStream>,
@@ -128,7 +128,7 @@ impl Names {
         Self {
             type_name: quote!(#type_name),
             model_type: quote!(#type_name),
-            global: quote!(#global),
+            global: Some(quote!(#global)),
             held: None,
             coordinates,
             momenta,
@@ -147,7 +147,7 @@ impl Names {
             type_name: quote!(#module::#type_name),
             held: Some(self.model_type),
             model_type: quote!(#module::#type_name),
-            global: quote!(#module::#global),
+            global: Some(quote!(#module::#global)),
             parameters: places(model, &quote!(self.0)),
             ..self
         }
@@ -160,10 +160,19 @@ impl Names {
             Some(_) => quote!(self.0.0),
         };
         Self {
-            type_name: self.global.clone(),
+            type_name: self.global.clone().unwrap_or_default(),
+            global: None,
             held: Some(self.model_type.clone()),
             parameters: places(model, &holder),
             ..self.clone()
+        }
+    }
+
+    /// The same identifiers, without a type for the global form.
+    pub fn without_global(self) -> Self {
+        Self {
+            global: None,
+            ..self
         }
     }
 

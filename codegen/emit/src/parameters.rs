@@ -5,7 +5,6 @@ use quote::quote;
 
 use super::{Context, doc, function::number, names};
 use dalembert_codegen::model::{Assumption, Model, Parameter};
-use dalembert_codegen::program::Form;
 use dalembert_codegen::tables::default_value;
 
 /// Emits the struct, `Default` if every parameter has a default, and the type of the global form of a reduced model.
@@ -35,14 +34,14 @@ pub(super) fn emit_fields(model: &Model) -> TokenStream {
         .collect()
 }
 
-/// Emits the type of the global form, if the model or scene itself has the reduced form.
+/// Emits the type of the global form, if it is a separate form and is emitted.
 pub(super) fn emit_global(
     context: &Context<'_>,
     type_name: &str,
     noun: &str,
     visibility: &TokenStream,
 ) -> TokenStream {
-    if context.form.program.form != Form::Reduced {
+    if context.names.global.is_none() {
         return TokenStream::new();
     }
     let model_type = Ident::new(type_name, Span::call_site());

@@ -25,6 +25,8 @@ pub struct Spec {
     pub visibility: String,
     /// Lines of the doc comment.
     pub documentation: Vec<String>,
+    /// The place of `#[global]`, which asks for the global form besides the reduced one. Only emitted Rust depends on it.
+    pub global: Option<Location>,
     /// Text of the declaration.
     pub source: String,
     /// Hash of the tokens of the declaration: the seed of the random points at which its expressions are compared.
@@ -74,6 +76,7 @@ impl Spec {
             snake_name,
             visibility: String::new(),
             documentation: Vec::new(),
+            global: None,
             source: String::new(),
             seed: 0,
             constants: Vec::new(),

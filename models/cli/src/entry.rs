@@ -8,7 +8,9 @@ use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
 use dalembert::erased::{Form, Shared};
 use dalembert::{Lagrangian, Scene, TaylorField};
-use dalembert_driver::{AnyModel, Code, Model, of_form, of_type};
+use dalembert_driver::{
+    AnyModel, Code, MakeWhole, Model, of_compiled, of_form, of_system, of_type,
+};
 use dalembert_jit::Loaded;
 
 use crate::error::CliError;
@@ -42,62 +44,126 @@ struct Known {
 }
 
 /// Constructor of a model with declared defaults.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 enum Build {
-    /// A compiled form, run by code that all forms share.
-    Erased(&'static Form),
+    /// A declared type or one of its scenes, and what makes its form from the text of the declaration.
+    Compiled(Compiled, MakeWhole),
     /// A form loaded from a text.
     Loaded(Arc<Form>),
-    /// A type whose runs have code compiled for it alone, and its description.
-    Typed(fn() -> Box<dyn AnyModel>, &'static Description),
+    /// A system that is made at run time, and its description.
+    Made(fn() -> Box<dyn AnyModel>, &'static Description),
 }
 
-impl Build {
+/// A declared type.
+#[derive(Clone, Copy)]
+enum Compiled {
+    /// A compiled form, run by code that all forms share.
+    Erased(&'static Form),
+    /// A type whose runs have code compiled for it alone, and its description.
+    Typed(fn(MakeWhole) -> Box<dyn AnyModel>, &'static Description),
+    /// A type that is too large for a form, and its description. Everything is compiled for it alone.
+    Large(fn() -> Box<dyn AnyModel>, &'static Description),
+}
+
+impl Compiled {
     // NOTE: the match is evaluated at compile time. Therefore only kernels are compiled for a type that has a form.
     const fn of<M: Model + Described + 'static>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
-            _ => Self::Typed(of_type::<M>, M::DESCRIPTION),
+            Some(_) => Self::Typed(of_type::<M>, M::DESCRIPTION),
+            None => Self::Large(|| of_system(M::with_defaults()), M::DESCRIPTION),
         }
     }
+}
 
+/// Message for a form that has no room, although the constructor of its entry refuses such forms.
+const HAS_ROOM: &str = "a form within the largest capacity";
+
+impl Build {
     fn build(&self) -> Box<dyn AnyModel> {
         match self {
-            Self::Erased(form) => erased(Shared::Static(form), Code::Pointers),
-            Self::Loaded(form) => erased(Arc::clone(form).into(), Code::Loaded),
-            Self::Typed(build, _) => build(),
+            Self::Compiled(Compiled::Erased(form), whole) => {
+                of_compiled(form, whole).expect(HAS_ROOM)
+            }
+            Self::Compiled(Compiled::Typed(build, _), whole) => build(Arc::clone(whole)),
+            Self::Compiled(Compiled::Large(build, _), _) => build(),
+            Self::Loaded(form) => of_form(Arc::clone(form).into(), Code::Loaded).expect(HAS_ROOM),
+            Self::Made(build, _) => build(),
         }
     }
 
     fn description(&self) -> &Description {
         match self {
-            Self::Erased(form) => &form.documentation.description,
+            Self::Compiled(Compiled::Erased(form), _) => &form.documentation.description,
+            Self::Compiled(
+                Compiled::Typed(_, description) | Compiled::Large(_, description),
+                _,
+            ) => description,
             Self::Loaded(form) => &form.documentation.description,
-            Self::Typed(_, description) => description,
+            Self::Made(_, description) => description,
         }
     }
 }
 
-/// The model of a form, which must fit the largest capacity.
-fn erased(form: Shared<Form>, code: Code) -> Box<dyn AnyModel> {
-    of_form(form, code).expect("a form within the largest capacity")
+/// The text of a compiled model. Its scenes share it, and it is loaded at most once.
+#[derive(Default)]
+struct Text {
+    /// The forms of the model and of its scenes; `None` if the text cannot be loaded.
+    forms: OnceLock<Option<Vec<Arc<Form>>>>,
+}
+
+impl Text {
+    /// What makes the form of a scene of a declaration.
+    fn scene(self: &Arc<Self>, description: &'static Description, scene: usize) -> MakeWhole {
+        let text = Arc::clone(self);
+        Arc::new(move || {
+            let forms = text.forms.get_or_init(|| {
+                let models = dalembert_jit::load(description.name, &description.source).ok()?;
+                let [model] = models.as_slice() else {
+                    return None;
+                };
+                let scenes = model.scenes.iter().map(|(_, form)| Arc::clone(form));
+                let forms = core::iter::once(Arc::clone(&model.form)).chain(scenes);
+                Some(forms.collect())
+            });
+            Some(Shared::from(Arc::clone(forms.as_ref()?.get(scene)?)))
+        })
+    }
+}
+
+/// A declared type with its scenes.
+struct Declaration {
+    description: &'static Description,
+    text: Arc<Text>,
+    known: Known,
+}
+
+impl Declaration {
+    fn add(&mut self, name: &str, compiled: Compiled) {
+        let scenes = &mut self.known.scenes;
+        let whole = self.text.scene(self.description, scenes.len());
+        scenes.push((name.to_owned(), Build::Compiled(compiled, whole)));
+    }
 }
 
 impl Entry {
     /// The entry of a model type with its scenes; the scene `all` is the model itself.
     pub fn of<M: Model + Described + 'static>() -> Self {
-        let mut known = Known {
-            scenes: vec![(WHOLE.to_owned(), const { Build::of::<M>() })],
+        let mut declaration = Declaration {
+            description: M::DESCRIPTION,
+            text: Arc::default(),
+            known: Known { scenes: Vec::new() },
         };
-        M::visit_scenes(&mut known);
-        Self::known_by(known)
+        declaration.add(WHOLE, const { Compiled::of::<M>() });
+        M::visit_scenes(&mut declaration);
+        Self::known_by(declaration.known)
     }
 
     /// The entry of a system that is made at run time: its description, and a function that makes the system with its
     /// declared defaults ([`of_system`](dalembert_driver::of_system)).
     pub fn of_system(description: &'static Description, build: fn() -> Box<dyn AnyModel>) -> Self {
         Self::known_by(Known {
-            scenes: vec![(WHOLE.to_owned(), Build::Typed(build, description))],
+            scenes: vec![(WHOLE.to_owned(), Build::Made(build, description))],
         })
     }
 
@@ -195,9 +261,8 @@ impl Known {
 
     fn check_size(&self) -> Result<(), CliError> {
         let excess = |(_, build): &(_, Build)| match build {
-            Build::Erased(form) => form.excess(),
             Build::Loaded(form) => form.excess(),
-            Build::Typed(..) => None,
+            Build::Compiled(..) | Build::Made(..) => None,
         };
         match self.scenes.iter().find_map(excess) {
             None => Ok(()),
@@ -209,13 +274,12 @@ impl Known {
     }
 }
 
-impl SceneVisitor for Known {
+impl SceneVisitor for Declaration {
     fn visit<S>(&mut self, name: &'static str)
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
     {
-        self.scenes
-            .push((name.to_owned(), const { Build::of::<S>() }));
+        self.add(name, const { Compiled::of::<S>() });
     }
 }
 

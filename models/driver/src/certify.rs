@@ -124,7 +124,7 @@ impl Subject<'_> {
         }
         let declared = system.form();
         if request.form == Form::Global {
-            system = system.global();
+            system = system.global().ok_or(Uncertified::Compiled)?;
         }
         let form = system.form();
         // For a model with modes, the form of its first mode.

@@ -74,10 +74,11 @@ pub use model::{
 };
 pub use modulo::{Generator, NoGroup, Symmetries};
 pub use orbit::{Found, Growth, Search};
+pub use owner::MakeWhole;
 pub use refusal::{Refusal, Uncertified};
 pub use run::{
     Changes, Contact, Control, Ending, Impact, ImpactTally, InputFunction, Piece, Settings, Watch,
     steer,
 };
-pub use typed::{Model, of_form, of_system, of_type};
+pub use typed::{Model, of_compiled, of_form, of_system, of_type};
 pub use variation::{Derivatives, Variable, VariationError, differentiate};

@@ -176,10 +176,16 @@ pub trait AnyModel: Runs {
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
     /// The law that a surface declares.
     fn law(&self, surface: usize) -> Option<Law>;
-    /// The state after an impact with this law.
-    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
-    /// The state after an impulse on its momenta.
-    fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64>;
+    /// The state of the global form after an impact with this law.
+    ///
+    /// # Errors
+    /// [`Fault::NotDerived`] if the model has no global form.
+    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault>;
+    /// The state of the global form after an impulse on its momenta.
+    ///
+    /// # Errors
+    /// Same as [`AnyModel::impact`].
+    fn kick(&self, state: &[f64], impulse: &[f64]) -> Result<Vec<f64>, Fault>;
 }
 
 /// The runs of a model with values for its parameters.

@@ -26,7 +26,7 @@ use crate::model::{
 use crate::orbit::{
     ForBranch, ForExponent, ForOrbit, ForReturn, Found, Growth, Search, Visit, Work,
 };
-use crate::owner::{OfForm, OfType, Owner};
+use crate::owner::{Inlined, LARGEST, MakeWhole, OfForm, OfType, Owner};
 use crate::refusal::Refusal;
 use crate::run::{self, Control, Ending, Settings, Watch, abreast};
 
@@ -48,9 +48,13 @@ struct Typed<O> {
     code: Code,
 }
 
-/// The model of a type, with its declared parameter values.
-pub fn of_type<M: Model + Described + 'static>() -> Box<dyn AnyModel> {
-    of_system(M::with_defaults())
+/// The model of a type, with its declared parameter values. `whole` makes the form of its declaration. It is called when
+/// the global form is first needed.
+pub fn of_type<M: Model + Described + 'static>(whole: MakeWhole) -> Box<dyn AnyModel> {
+    Box::new(Typed {
+        owner: Inlined::of(M::with_defaults(), whole),
+        code: Code::Inlined,
+    })
 }
 
 /// The model of a system, with the values of its parameters.
@@ -61,62 +65,71 @@ pub fn of_system<M: Model + 'static>(system: M) -> Box<dyn AnyModel> {
     })
 }
 
-/// The model of a form, with its declared parameter values, run by an erased system of the least sufficient capacity
-/// ([`erased::Form::capacity`]). A shared form is freed with its last owner.
+/// The model of a loaded form, with its declared parameter values, run by an erased system of the least sufficient
+/// capacity ([`erased::Form::capacity`]). A shared form is freed with its last owner.
 ///
 /// # Errors
 /// [`Excess`] if the form exceeds every capacity.
-// NOTE: not generic, so that the code that runs forms is compiled once, in this crate.
 pub fn of_form(form: Shared<erased::Form>, code: Code) -> Result<Box<dyn AnyModel>, Excess> {
-    fn with_room<const C: usize>(
-        form: &Shared<erased::Form>,
-        code: Code,
-    ) -> Result<Box<dyn AnyModel>, Excess> {
-        let owner = OfForm::<C>::of(form)?;
-        Ok(Box::new(Typed { owner, code }))
-    }
-    with_room::<8>(&form, code).or_else(|_| with_room::<128>(&form, code))
+    erased(&form, None, code)
 }
 
-/// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and need not
-/// satisfy the constraints.
-fn checked_velocity<M: Model>(
-    model: &M,
-    t: f64,
-    q: &M::Vector,
-    rates: &Rates,
-) -> Result<M::Vector, StateError> {
-    let global = model.global();
-    let p = match rates {
-        Rates::Velocities(qdot) => {
-            let qdot = vector(q, qdot);
-            global.checked(t, q, &qdot)?;
-            return Ok(qdot);
-        }
-        Rates::Momenta(p) => vector(q, p),
-    };
+/// Same as [`of_form`], for a compiled form. `whole` makes the form of the same declaration with everything; it is called
+/// when the global form or certified motion is first needed.
+///
+/// # Errors
+/// Same as [`of_form`].
+pub fn of_compiled(
+    form: &'static erased::Form,
+    whole: &MakeWhole,
+) -> Result<Box<dyn AnyModel>, Excess> {
+    erased(&Shared::Static(form), Some(whole), Code::Pointers)
+}
+
+// NOTE: not generic, so that the code that runs forms is compiled once, in this crate.
+fn erased(
+    form: &Shared<erased::Form>,
+    whole: Option<&MakeWhole>,
+    code: Code,
+) -> Result<Box<dyn AnyModel>, Excess> {
+    fn with_room<const C: usize>(
+        form: &Shared<erased::Form>,
+        whole: Option<&MakeWhole>,
+        code: Code,
+    ) -> Result<Box<dyn AnyModel>, Excess> {
+        let owner = OfForm::<C>::of(form, whole)?;
+        Ok(Box::new(Typed { owner, code }))
+    }
+    with_room::<8>(form, whole, code).or_else(|_| with_room::<LARGEST>(form, whole, code))
+}
+
+/// The global form of a model.
+pub(crate) fn global<M: Model>(model: &M) -> Result<M::Global, Fault> {
+    model.global().ok_or(Fault::NotDerived)
+}
+
+/// The velocity that belongs to given momenta, after all checks except that of the constraints. Momenta belong to the
+/// global form and need not satisfy the constraints.
+fn velocity_of<M: Model>(model: &M, t: f64, q: &[f64], p: &[f64]) -> Result<M::Vector, StateError> {
+    let global = global(model)?;
+    let zero = global.zero_vector();
+    let (q, p) = (vector(&zero, q), vector(&zero, p));
     global.check_parameters()?;
     let mut components = q.as_slice().iter().chain(p.as_slice());
     if let Some(component) = components.position(|value| !value.is_finite()) {
         return Err(StateError::NotFinite { component });
     }
-    let state = global.state_from_momenta(t, q, &p)?;
+    let state = global.state_from_momenta(t, &q, &p)?;
     match global.outside_chart(&state) {
         Some(coordinate) => Err(StateError::OutsideChart { coordinate }),
         None => Ok(global.velocity(t, &state)?),
     }
 }
 
-/// The position and the velocity of a given state, after all checks.
-fn located<M: Model>(model: &M, origin: &Origin) -> Result<(M::Vector, M::Vector), StateError> {
-    let state = prepare(model, model, 0.0, origin)?;
-    let qdot = model.velocity(0.0, &state)?;
-    Ok((model.position(&state), qdot))
-}
-
-/// The initial state of `system`, which is the reduced or the global form of `model`.
-pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
-    model: &M,
+/// The initial state of `system`, a form of the model. `general` gives the model with its global form, which is needed
+/// for momenta.
+pub(crate) fn prepare<G: Model, S: System>(
+    general: impl FnOnce() -> Result<G, Fault>,
     system: &S,
     t: f64,
     origin: &Origin,
@@ -125,7 +138,17 @@ pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
     if origin.policy == OffConstraint::Project {
         q = system.complete_position(t, &q, &system.zero_vector())?;
     }
-    let qdot = checked_velocity(model, t, &q, &origin.rates)?;
+    let qdot = match &origin.rates {
+        Rates::Velocities(qdot) => {
+            let qdot = vector(&q, qdot);
+            system.checked(t, &q, &qdot)?;
+            qdot
+        }
+        Rates::Momenta(p) => {
+            let qdot = velocity_of(&general()?, t, q.as_slice(), p)?;
+            vector(&q, qdot.as_slice())
+        }
+    };
     if origin.policy == OffConstraint::Error {
         system.admit(t, &q, &qdot)?;
     }
@@ -150,16 +173,16 @@ fn marks(marked: &[bool]) -> Vec<f64> {
 /// Evaluates an expression with the model in the form of the settings and its state in that form.
 macro_rules! in_form {
     ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
+        let general = || $typed.owner.general();
         match $settings.form {
             Form::Reduced => {
                 let $model = &$typed.owner.system();
-                let $state = prepare($model, $model, 0.0, $origin)?;
+                let $state = prepare(general, $model, 0.0, $origin)?;
                 $work
             }
             Form::Global => {
-                let declared = &$typed.owner.system();
-                let $model = &declared.global();
-                let $state = prepare(declared, $model, 0.0, $origin)?;
+                let $model = &$typed.global().map_err(StateError::from)?;
+                let $state = prepare(general, $model, 0.0, $origin)?;
                 $work
             }
         }
@@ -188,10 +211,9 @@ impl<O: Owner> AnyModel for Typed<O> {
     }
 
     fn work(&self, form: Form) -> Option<dalembert::jet::Work> {
-        let model = self.owner.system();
         match form {
-            Form::Reduced => TaylorField::work(&model),
-            Form::Global => TaylorField::work(&model.global()),
+            Form::Reduced => TaylorField::work(&self.owner.system()),
+            Form::Global => TaylorField::work(&self.global().ok()?),
         }
     }
 
@@ -256,15 +278,13 @@ impl<O: Owner> AnyModel for Typed<O> {
     }
 
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError> {
-        let model = self.owner.system();
-        let state = prepare(&model, &model.global(), t, origin)?;
+        let state = prepare(|| self.owner.general(), &self.global()?, t, origin)?;
         Ok(state.as_slice().to_vec())
     }
 
     fn point(&self, origin: &Origin) -> Result<Point, StateError> {
-        let model = self.owner.system();
-        let global = model.global();
-        let state = prepare(&model, &global, 0.0, origin)?;
+        let global = self.global()?;
+        let state = prepare(|| self.owner.general(), &global, 0.0, origin)?;
         Ok(point(&global, 0.0, &state))
     }
 
@@ -286,8 +306,8 @@ impl<O: Owner> AnyModel for Typed<O> {
     }
 
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault> {
-        let model = self.owner.system();
-        let global = model.global();
+        let model = self.owner.general()?;
+        let global = global(&model)?;
         let state = vector(&global.zero_state(), state);
         global.inspect(t, &state, report)?;
         if model.description().quasi_velocities.is_empty() {
@@ -303,10 +323,9 @@ impl<O: Owner> AnyModel for Typed<O> {
         model.effects().law(&model, surface)
     }
 
-    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64> {
-        let model = self.owner.system();
-        let global = model.global();
-        let contact = Contact::<<<O::System<'_> as Instance>::Global as System>::Impulse> {
+    fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Result<Vec<f64>, Fault> {
+        let global = self.global()?;
+        let contact = Contact::<<GlobalOf<'_, O> as System>::Impulse> {
             gap_rate: contact.gap_rate,
             constrained_rate: contact.constrained_rate,
             surface_rate: contact.surface_rate,
@@ -316,15 +335,14 @@ impl<O: Owner> AnyModel for Typed<O> {
         };
         let mut state = vector(&global.zero_state(), state);
         global.kick(&mut state, contact.impulse(law), &contact.direction);
-        StateVector::as_slice(&state).to_vec()
+        Ok(StateVector::as_slice(&state).to_vec())
     }
 
-    fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64> {
-        let model = self.owner.system();
-        let global = model.global();
+    fn kick(&self, state: &[f64], impulse: &[f64]) -> Result<Vec<f64>, Fault> {
+        let global = self.global()?;
         let mut state = vector(&global.zero_state(), state);
         global.kick(&mut state, 1.0, &vector(&global.zero_impulse(), impulse));
-        StateVector::as_slice(&state).to_vec()
+        Ok(StateVector::as_slice(&state).to_vec())
     }
 }
 
@@ -348,7 +366,7 @@ impl<O: Owner> Runs for Typed<O> {
         watch: &mut dyn Watch,
     ) -> Option<Result<Ending, Refusal>> {
         let values = TaylorField::parameters(&self.owner.system());
-        let form = self.owner.form()?;
+        let form = self.owner.whole()?;
         run::steer(
             form,
             Row::as_slice(&values),
@@ -365,10 +383,16 @@ impl<O: Owner> Runs for Typed<O> {
         settings: &Settings,
         looks_inside: bool,
     ) -> Vec<Result<Ending, Refusal>> {
-        let model = self.owner.system();
+        let general = || self.owner.general();
         match settings.form {
-            Form::Reduced => abreast(&model, runs, settings, looks_inside, Clone::clone),
-            Form::Global => abreast(&model, runs, settings, looks_inside, Instance::global),
+            Form::Reduced => abreast(&general, &self.owner.system(), runs, settings, looks_inside),
+            Form::Global => match self.global() {
+                Ok(global) => abreast(&general, &global, runs, settings, looks_inside),
+                Err(fault) => runs
+                    .iter()
+                    .map(|_| Err(StateError::from(fault).into()))
+                    .collect(),
+            },
         }
     }
 
@@ -446,7 +470,7 @@ impl<O: Owner> Runs for Typed<O> {
         place: &Place,
     ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal> {
         let model = self.owner.varied()?;
-        let state = prepare(&model, &model, place.t, origin)?;
+        let state = prepare(|| self.owner.general(), &model, place.t, origin)?;
         let q = model.position(&state);
         let qdot = model.velocity(place.t, &state).map_err(StateError::from)?;
         let given = [StateVector::as_slice(&q), StateVector::as_slice(&qdot)];
@@ -484,7 +508,7 @@ impl<O: Owner> Runs for Typed<O> {
         in_form!(self, origin, request, |model, state| {
             let values = TaylorField::parameters(model);
             let subject = Subject {
-                form: self.owner.form(),
+                form: self.owner.whole(),
                 values: values.as_slice(),
                 origin,
                 state: StateVector::as_slice(&state),
@@ -494,7 +518,15 @@ impl<O: Owner> Runs for Typed<O> {
     }
 }
 
+/// The global form of the model of an owner.
+type GlobalOf<'a, O> = <<O as Owner>::General<'a> as Instance>::Global;
+
 impl<O: Owner> Typed<O> {
+    /// The model in its global form.
+    fn global(&self) -> Result<GlobalOf<'_, O>, Fault> {
+        global(&self.owner.general()?)
+    }
+
     /// Makes a computation on the section of a search; `None` for a scene without variations.
     fn at_section<W: Work>(
         &self,
@@ -503,7 +535,9 @@ impl<O: Owner> Typed<O> {
         work: W,
     ) -> Result<Option<Result<W::Output, OrbitError>>, Refusal> {
         let model = self.owner.varied()?;
-        let (q, qdot) = located(&model, origin)?;
+        let state = prepare(|| self.owner.general(), &model, 0.0, origin)?;
+        let qdot = model.velocity(0.0, &state).map_err(StateError::from)?;
+        let q = model.position(&state);
         let visit = Visit {
             search,
             q: q.as_slice(),

@@ -23,7 +23,7 @@ use crate::names::{self, Unknown};
 use crate::owner::Common;
 use crate::refusal::Refusal;
 use crate::run::{Settings, effects};
-use crate::typed::prepare;
+use crate::typed::{global, prepare};
 
 /// A variable of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,9 +174,9 @@ pub fn differentiate(
     }
     let system = match settings.form {
         Form::Reduced => model,
-        Form::Global => model.global(),
+        Form::Global => global(&model).map_err(StateError::from)?,
     };
-    let state = prepare(&model, &system, 0.0, origin)?;
+    let state = prepare(|| Ok(model), &system, 0.0, origin)?;
     let q = system.position(&state);
     let qdot = system.velocity(0.0, &state).map_err(StateError::from)?;
     let differentiator = Differentiator {

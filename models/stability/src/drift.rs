@@ -42,7 +42,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn off_the_constraint(setting: Setting, report: &mut Report) {
-    let disk = wide_disk().global();
+    let disk = wide_disk().global().expect("the global form");
     let qdot = [0.7, -0.2, 1.5, 0.6];
     let state = disk
         .state_unchecked(0.0, &vector(&[0.0; 4]), &vector(&qdot))

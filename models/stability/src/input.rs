@@ -229,7 +229,7 @@ fn off_constraints(report: &mut Report) {
     let projected = disk.state_projected(0.0, &q, &qdot).expect("a state");
     let velocity = disk.velocity(0.0, &projected).expect("a velocity");
     report.equal("projected", disk.admit(0.0, &q, &velocity).is_ok(), true);
-    let global = disk.global();
+    let global = disk.global().expect("the global form");
     let kept = global.state_unchecked(0.0, &q, &qdot).expect("a state");
     let velocity = global.velocity(0.0, &kept).expect("a velocity");
     report.near("kept", velocity.as_slice()[0], 1.0, 1e-15);

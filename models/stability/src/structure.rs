@@ -229,7 +229,7 @@ fn growing(report: &mut Report) {
     // In global form, Gauss's method leaves D, and the energy drifts. The effect that projects on D is not symmetric.
     // The reduced form needs no projection.
     let reduced = STEERED_EDGE.model();
-    let edge = reduced.global();
+    let edge = reduced.global().expect("the global form");
     let leaving = energy!(long, Gauss4, 0.05, edge, start);
     long.grows(&leaving, 1.5);
     let projected = (Some(Projection::new()), None, None);

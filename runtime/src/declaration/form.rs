@@ -61,7 +61,10 @@ impl<S: Emitted> Of<S> {
                 false => <S::Firsts<f64> as Row<f64>>::CAPACITY,
             },
             defaults: Held::Static(&Self::write_defaults),
-            global: Global::OfType(|| <S::Global as Described>::FORM),
+            global: match S::HAS_GLOBAL {
+                true => Global::OfType(|| <S::Global as Described>::FORM),
+                false => Global::NotWritten,
+            },
             forms: Held::Static(S::FORMS),
             room: <S::Room<f64> as Row<f64>>::CAPACITY,
         }

@@ -41,6 +41,8 @@ pub type Defaults = dyn Fn(&mut [f64]) + Send + Sync;
 pub enum Global {
     /// The form is the global one.
     Itself,
+    /// The global form was not asked for.
+    NotWritten,
     /// The form of a type.
     // NOTE: this is a function, because the constant of a type cannot refer to itself.
     OfType(fn() -> Option<&'static Form>),
@@ -184,12 +186,13 @@ impl Form {
         count
     }
 
-    /// The global form; the form itself if it is global.
-    pub fn global(&self) -> &Self {
+    /// The global form; the form itself if it is global. `None` if it was not asked for.
+    pub fn global(&self) -> Option<&Self> {
         match &self.global {
-            Global::Itself => self,
-            Global::OfType(form) => form().unwrap_or(self),
-            Global::Another(form) => form,
+            Global::Itself => Some(self),
+            Global::NotWritten => None,
+            Global::OfType(form) => form(),
+            Global::Another(form) => Some(form),
         }
     }
 

@@ -265,11 +265,9 @@ impl<const C: usize> Documented for Erased<'_, C> {
         &self.form.documentation
     }
 
-    fn globally(&self) -> Self {
-        Self {
-            form: self.form.global(),
-            ..*self
-        }
+    fn globally(&self) -> Option<Self> {
+        let form = self.form.global()?;
+        Some(Self { form, ..*self })
     }
 
     fn show_variational<Visitor: VariationalVisitor>(

@@ -22,8 +22,11 @@ pub trait Documented: Declared {
     /// The documentation of the form.
     fn documentation(&self) -> &Documentation;
 
+    /// True if the system has its global form.
+    const HAS_GLOBAL: bool = true;
+
     /// Implementation of [`Instance::global`].
-    fn globally(&self) -> Self::Global;
+    fn globally(&self) -> Option<Self::Global>;
 
     /// Implementation of [`Instance::set_parameter`].
     fn set_argument(&mut self, index: usize, value: f64);
@@ -74,7 +77,7 @@ impl<S: Documented> Instance for S {
     }
 
     #[inline]
-    fn global(&self) -> S::Global {
+    fn global(&self) -> Option<S::Global> {
         self.globally()
     }
 

@@ -251,12 +251,12 @@ where
 {
     type Global = Unsure<M::Global>;
 
-    fn global(&self) -> Self::Global {
-        Unsure {
-            system: self.system.global(),
+    fn global(&self) -> Option<Self::Global> {
+        Some(Unsure {
+            system: self.system.global()?,
             description: self.description,
             fails: self.fails,
-        }
+        })
     }
 
     fn parameter(&self, index: usize) -> f64 {

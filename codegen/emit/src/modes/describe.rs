@@ -30,7 +30,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
             }
 
             #[inline]
-            fn globally(&self) -> Self { *self }
+            fn globally(&self) -> ::core::option::Option<Self> { ::core::option::Option::Some(*self) }
 
             fn set_argument(&mut self, index: usize, value: f64) { #set }
 

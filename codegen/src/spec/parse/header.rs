@@ -1,17 +1,20 @@
-//! Header of a model: `/// documentation pub(crate) Name { .. }`
+//! Header of a model: `/// documentation #[global] pub(crate) Name { .. }`
 
 use proc_macro2::{Delimiter, Group};
 
 use super::super::ast::{Spec, Word};
 use super::super::cursor::{Cursor, Read, Refused};
 use super::super::keyword::{SECTIONS, is_rust_keyword};
-use super::{documentation, source};
+use super::{Attributes, attributes, source};
 
 const FORM: &str = "a model is written `pub Name { coordinates { .. } lagrangian = ..; }`";
 
 /// Reads documentation, visibility and name. Returns the empty model, and the group with its declarations.
 pub(super) fn read(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
-    let documentation = documentation(cursor)?;
+    let Attributes {
+        documentation,
+        global,
+    } = attributes(cursor)?;
     let visibility = visibility(cursor);
     let (name, snake_name) = name(cursor)?;
     let Some(body) = cursor.eat_group(Delimiter::Brace) else {
@@ -27,6 +30,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
     spec.seed = source::hash(&spec.name.text, body);
     spec.source = source::text(&documentation, &visibility, &spec.name.text, body);
     spec.documentation = documentation;
+    spec.global = global;
     spec.visibility = visibility;
     Ok((spec, body.clone()))
 }

@@ -28,7 +28,7 @@ use super::ast::{Declaration, Declared, Index, Indices, Lagrangian, Spec, Word};
 use super::cursor::{Cursor, Read, tokens_of};
 use super::keyword::{self, SECTIONS};
 use super::limits::check_nesting;
-use crate::diagnostics::{Diagnostics, Location, listed, nearest};
+use crate::diagnostics::{Diagnostics, Location, global_of_modes, listed, nearest};
 
 pub use families::mode_help;
 pub use header::camel_case;
@@ -41,6 +41,9 @@ pub fn read(tokens: TokenStream, indices: Indices) -> Result<Declaration, Diagno
     let (spec, body, diagnostics) = header(tokens)?;
     let tokens = tokens_of(body.stream());
     if modes::are_declared(&tokens) && diagnostics.is_empty() {
+        if let Some(at) = spec.global {
+            return Err(global_of_modes(at));
+        }
         return modes::read(&spec, &tokens, &body, indices).map(Declaration::Modes);
     }
     let spec = one_piece(spec, &tokens, &body, diagnostics)?;
@@ -105,9 +108,30 @@ fn one_piece(
     diagnostics.finish(spec)
 }
 
+/// Attributes before a model or a declaration.
+#[derive(Default)]
+struct Attributes {
+    /// The lines of the doc comments.
+    documentation: Vec<String>,
+    /// The place of `#[global]`.
+    global: Option<Location>,
+}
+
 /// The lines of the next doc comments. Other attributes are refused.
 fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
-    let mut lines = Vec::new();
+    let attributes = attributes(cursor)?;
+    match attributes.global {
+        None => Ok(attributes.documentation),
+        Some(at) => {
+            let help = "write it before the name of the model: `#[global] pub Name { .. }`";
+            Err(cursor.refuse(at, "`#[global]` belongs to a whole model", help))
+        }
+    }
+}
+
+/// The next attributes: doc comments and `#[global]`. Others are refused.
+fn attributes(cursor: &mut Cursor<'_>) -> Read<Attributes> {
+    let mut attributes = Attributes::default();
     while cursor.eat_operator("#").is_some() {
         let at = cursor.last();
         let tokens = cursor
@@ -115,15 +139,18 @@ fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
             .map(|group| tokens_of(group.stream()));
         match tokens.as_deref() {
             Some([TokenTree::Ident(doc), TokenTree::Punct(_), text]) if *doc == "doc" => {
-                lines.extend(source::doc_lines(text));
+                attributes.documentation.extend(source::doc_lines(text));
+            }
+            Some([TokenTree::Ident(global)]) if *global == "global" => {
+                attributes.global = Some(at);
             }
             _ => {
-                let help = "a comment is written `// ..`, a doc comment `/// ..`";
-                return Err(cursor.refuse(at, "attributes are not part of a model", help));
+                let help = "a comment is written `// ..`, a doc comment `/// ..`; before a model, `#[global]` asks for its global form";
+                return Err(cursor.refuse(at, "unknown attribute", help));
             }
         }
     }
-    Ok(lines)
+    Ok(attributes)
 }
 
 /// Reads the declarations in order. An error in one does not hide errors in the next.

@@ -120,7 +120,15 @@ fn declarations_are_known() {
     refused_in("initial «=» 3;", "expected `{ .. }` after `initial`");
     refused_in(
         "«#»[cfg(test)] let a = 1;",
-        "attributes are not part of a model\nhelp: a comment is written `// ..`",
+        "unknown attribute\nhelp: a comment is written `// ..`",
+    );
+    refused_in(
+        "«#»[global] let a = 1;",
+        "`#[global]` belongs to a whole model\nhelp: write it before the name of the model",
+    );
+    refused(
+        "«#»[global] P { coordinates { x; } lagrangian = dot(x)^2; modes { a { } b { } } }",
+        "the modes of a model always have their global forms\nhelp: leave out `#[global]`",
     );
     refused_in(
         "«until» = 3;",

@@ -2,7 +2,7 @@
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::simulation::STEP_BUDGET;
-use dalembert::{Observer, Run, Taylor, Tolerance};
+use dalembert::{Fault, Observer, Run, Taylor, Tolerance};
 
 use super::{Bridge, Ending, Integrals, Settings, Solved, Watch, effects, ending};
 use crate::model::{Together, point};
@@ -22,23 +22,31 @@ fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, Refusal> {
     Ok(limited!(Taylor::new(tolerance), settings))
 }
 
-/// Makes several runs at once, in one form of the model. A run without a valid initial state gives its [`Refusal`].
-pub(crate) fn abreast<M: Model, S: Model<Vector = M::Vector>>(
-    model: &M,
+fn set_parameters<M: Model>(model: &mut M, values: &[f64]) {
+    for (index, value) in values.iter().enumerate() {
+        model.set_parameter(index, *value);
+    }
+}
+
+/// Makes several runs at once of `system`, a form of the model. A run without a valid initial state gives its [`Refusal`].
+pub(crate) fn abreast<G: Model, S: Model>(
+    general: &dyn Fn() -> Result<G, Fault>,
+    system: &S,
     runs: Vec<Together<'_>>,
     settings: &Settings,
     looks_inside: bool,
-    form: impl Fn(&M) -> S,
 ) -> Vec<Result<Ending, Refusal>> {
     let mut refused = Vec::new();
     let mut begun = Vec::new();
     for (index, run) in runs.into_iter().enumerate() {
-        let mut member = model.clone();
-        for (index, value) in run.parameters.iter().enumerate() {
-            member.set_parameter(index, *value);
-        }
-        let model = form(&member);
-        match prepare(&member, &model, 0.0, &run.origin) {
+        let mut model = system.clone();
+        set_parameters(&mut model, &run.parameters);
+        let general = || {
+            let mut model = general()?;
+            set_parameters(&mut model, &run.parameters);
+            Ok(model)
+        };
+        match prepare(general, &model, 0.0, &run.origin) {
             Ok(state) => begun.push(Abreast {
                 model,
                 state,

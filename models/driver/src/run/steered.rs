@@ -79,9 +79,9 @@ pub fn steer(
     }
     let system = match settings.form {
         Form::Reduced => model,
-        Form::Global => model.global(),
+        Form::Global => model.global()?,
     };
-    let state = match prepare(&model, &system, 0.0, origin) {
+    let state = match prepare(|| Ok(model), &system, 0.0, origin) {
         Ok(state) => state,
         Err(error) => return Some(Err(error.into())),
     };

@@ -29,15 +29,17 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
     let laws = match moment.collected.focus(surface) {
         None => evaluate_laws(model, moment, index, laws),
         Some(impulse) => {
-            let state = model.kick(moment.state, impulse);
             let singular = Fault::SingularSurface { surface: index };
             let found = match impulse.iter().all(|value| value.is_finite()) {
-                true => Collected::at(model, moment.t, &state),
+                true => model.kick(moment.state, impulse).and_then(|state| {
+                    let collected = Collected::at(model, moment.t, &state)?;
+                    Ok((state, collected))
+                }),
                 false => Err(singular),
             };
             match found {
                 Err(fault) => refusal(description, &StateError::Fault(fault)),
-                Ok(collected) => {
+                Ok((state, collected)) => {
                     let focused = Moment {
                         t: moment.t,
                         state: &state,
@@ -70,10 +72,10 @@ fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws
                 // The instantaneous constraints alone may make the gap rate positive; then no law acts.
                 let is_left = is_rough && contact.gap_rate >= 0.0;
                 let after = match is_left {
-                    true => state.to_vec(),
+                    true => Ok(state.to_vec()),
                     false => model.impact(state, &contact, law),
                 };
-                let result = match Collected::at(model, t, &after) {
+                let result = match after.and_then(|after| Collected::at(model, t, &after)) {
                     Ok(after) => struck(after, name).into(),
                     Err(error) => fault(&error),
                 };
