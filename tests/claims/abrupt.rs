@@ -392,5 +392,5 @@ fn claims_about_velocities_that_a_root_gives_stay_open() {
     check(&along, "conserved: energy", Proved);
     check(&field, "conserved: dot(x)", Proved);
     let away = planar("dot(y) = -2*sqrt(1 + y^2)*dot(x)");
-    check(&away, "not conserved: dot(x)", Proved);
+    check(&away, "conserved: dot(y) + 2*sqrt(1 + y^2)*dot(x)", Proved);
 }

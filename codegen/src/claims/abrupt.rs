@@ -362,9 +362,12 @@ impl Equations<'_> {
         let constraints = self.derivation.constraints.iter();
         let equation = |constraint: &ConstraintForm| {
             let entries = velocities.iter().zip(&constraint.form);
-            let own = entries.filter(|(_, entry)| !model.pool.is_syntactic_zero(**entry));
+            let restricted = entries.filter(|(_, entry)| !model.pool.is_syntactic_zero(**entry));
             let terms = constraint.form.iter().chain([&constraint.affine]);
-            (own.map(|(by, _)| *by).collect(), terms.copied().collect())
+            (
+                restricted.map(|(by, _)| *by).collect(),
+                terms.copied().collect(),
+            )
         };
         constraints.map(equation).collect()
     }

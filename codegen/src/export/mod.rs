@@ -132,21 +132,19 @@ fn routines(form: &FormOf<'_>) -> Vec<Routine> {
     named.collect()
 }
 
+/// Results of functions that give a new place in the motion.
+const VELOCITIES: &str = "positions and velocities";
+
 /// A function under its exported name; `None` for an internal function.
 fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Routine> {
     let model = form.model;
-    let surface = |s: usize| {
-        let name = &model.surfaces.get(s)?.name;
-        Some((name.display.clone(), name.display.replace('.', "_")))
-    };
-    let velocities = "positions and velocities";
     let (name, about, takes) = match kernel {
         Kernel::Velocity => ("velocity".into(), "the velocities".into(), Takes::State),
         Kernel::Rate => ("rate".into(), "the rates of the state".into(), Takes::State),
         Kernel::Energy => ("energy".into(), "the energy".into(), Takes::State),
         Kernel::Motion => ("motion".into(), motion(form), Takes::Velocities),
         Kernel::Initial => {
-            let about = format!("the declared initial {velocities}, 0 where none is declared");
+            let about = format!("the declared initial {VELOCITIES}, 0 where none is declared");
             ("initial".into(), about, Takes::State)
         }
         Kernel::Multipliers => (
@@ -175,42 +173,9 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
             list(model, "the rates of the gaps", surfaces),
             Takes::State,
         ),
-        Kernel::Blow(s) => {
-            let (shown, plain) = surface(s)?;
-            let is_focused = kernels_of(form).any(|kernel| kernel == Kernel::Focus(s));
-            let from = match is_focused {
-                true => format!(", which begins at the result of focus_{plain}"),
-                false => String::new(),
-            };
-            (
-                format!("impact_{plain}"),
-                format!("the state after an impact on {shown} by its law{from}"),
-                Takes::State,
-            )
-        }
-        Kernel::Focus(s) => {
-            let (shown, plain) = surface(s)?;
-            (
-                format!("focus_{plain}"),
-                format!("the state that satisfies the instantaneous constraints of {shown}"),
-                Takes::State,
-            )
-        }
-        Kernel::Reset(s) => {
-            let (shown, plain) = surface(s)?;
-            (
-                format!("reset_{plain}"),
-                format!("{velocities} after the reset at {shown}"),
-                Takes::State,
-            )
-        }
-        Kernel::Entry(s) => {
-            let (shown, plain) = surface(s)?;
-            (
-                format!("entry_{plain}"),
-                format!("{velocities} in the mode that is entered at {shown}"),
-                Takes::State,
-            )
+        Kernel::Blow(_) | Kernel::Focus(_) | Kernel::Reset(_) | Kernel::Entry(_) => {
+            let (name, about) = of_surface(form, kernel)?;
+            (name, about, Takes::State)
         }
         _ => return None,
     };
@@ -225,6 +190,45 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
         about,
         takes,
         lines,
+    })
+}
+
+/// Name and description of a function of a surface; `None` for any other.
+fn of_surface(form: &FormOf<'_>, kernel: Kernel) -> Option<(String, String)> {
+    let named = |s: usize| {
+        let shown = &form.model.surfaces.get(s)?.name.display;
+        Some((shown, shown.replace('.', "_")))
+    };
+    Some(match kernel {
+        Kernel::Blow(s) => {
+            let (shown, plain) = named(s)?;
+            let mut kernels = form.program.kernels().into_iter();
+            let from = match kernels.any(|(kernel, _)| kernel == Kernel::Focus(s)) {
+                true => format!(", which begins at the result of focus_{plain}"),
+                false => String::new(),
+            };
+            let about = format!("the state after an impact on {shown} by its law{from}");
+            (format!("impact_{plain}"), about)
+        }
+        Kernel::Focus(s) => {
+            let (shown, plain) = named(s)?;
+            let about =
+                format!("the state that satisfies the instantaneous constraints of {shown}");
+            (format!("focus_{plain}"), about)
+        }
+        Kernel::Reset(s) => {
+            let (shown, plain) = named(s)?;
+            (
+                format!("reset_{plain}"),
+                format!("{VELOCITIES} after the reset at {shown}"),
+            )
+        }
+        Kernel::Entry(s) => {
+            let (shown, plain) = named(s)?;
+            let about = format!("{VELOCITIES} in the mode that is entered at {shown}");
+            (format!("entry_{plain}"), about)
+        }
+        _ => return None,
     })
 }
 
@@ -254,11 +258,6 @@ fn outputs(model: &Model) -> String {
     });
     let names: Vec<String> = names.collect();
     format!("the declared outputs: {}", names.join(", "))
-}
-
-fn kernels_of(form: &FormOf<'_>) -> impl Iterator<Item = Kernel> {
-    let kernels = form.program.kernels().into_iter();
-    kernels.map(|(kernel, _)| kernel)
 }
 
 /// Replaces an impulse by the state after it.

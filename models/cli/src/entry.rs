@@ -113,7 +113,7 @@ struct Text {
 }
 
 impl Text {
-    /// What makes the form of a scene of a declaration.
+    /// Returns the function that makes the form of a scene of a declaration.
     fn scene(self: &Arc<Self>, description: &'static Description, scene: usize) -> MakeWhole {
         let text = Arc::clone(self);
         Arc::new(move || {

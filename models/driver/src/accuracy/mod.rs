@@ -58,8 +58,7 @@ const ADAPTIVE: u32 = 5;
 /// Times whose ratio is below this number are equal: two timings of the same case differ by as much.
 const EQUAL: f64 = 1.05;
 
-/// The tolerances of the two reference runs. Both are below the unit of rounding, so that the runs differ in their steps
-/// only.
+/// The tolerances of the two reference runs. Both are below the unit of rounding, so that the runs differ by rounding only.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
 
 /// Plan of the measurements.

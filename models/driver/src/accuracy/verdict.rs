@@ -52,17 +52,18 @@ pub(crate) fn verify<M: Model>(
     let reference = reference(model, state, &base)?;
     let track = audited(model, state, settings, until)?;
     let is_same = track.is_run_of(ending);
-    let is_lost = reference.floor > LOST;
-    let lost = format!(
-        "rounding grows along this motion, so that references differ by {:.1e}; verify a shorter run",
-        reference.floor
-    );
+    let lost = || {
+        format!(
+            "rounding grows along this motion, so that references differ by {:.1e}; verify a shorter run",
+            reference.floor
+        )
+    };
     let reason = (!is_same)
         .then(|| "the run is not reproducible: the same settings give another end".to_owned())
         .or_else(|| track.doubt("the run"))
         .or_else(|| reference.doubt.clone())
         .or_else(|| track.difference_from(&reference.track, ["the run", "the reference"]))
-        .or(is_lost.then_some(lost));
+        .or_else(|| (reference.floor > LOST).then(lost));
     Ok(match reason {
         None => Verified::Measured {
             error: track.distance(&reference.track),
