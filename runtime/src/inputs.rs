@@ -440,6 +440,10 @@ where
         self.system.opposite(surface)
     }
 
+    fn lands_on(&self, surface: usize, other: usize) -> bool {
+        self.system.lands_on(surface, other)
+    }
+
     fn landing(
         &self,
         surface: usize,

@@ -168,6 +168,71 @@ fn every_motion_from_a_range_is_inside() {
 }
 
 #[test]
+fn declared_values_move_with_their_parameter() {
+    const FREE: &str = "M {
+        coordinates { x; }
+        parameters { a = 1; }
+        lagrangian = dot(x)^2/2;
+        initial { x = a; dot(x) = 2*a; until = 1; }
+    }";
+    let (exit, document) = document(FREE, "--certify-within a=0.9..1.1");
+    assert_eq!(exit, Exit::Reached);
+    let [[lo, hi], [slow, fast]] =
+        [&document["outcome"]["q"], &document["outcome"]["qdot"]].map(|all| ranges(all)[0]);
+    assert!(lo < 2.7 && 3.3 < hi && hi - lo < 0.7, "{lo}, {hi}");
+    assert!(
+        slow < 1.8 && 2.2 < fast && fast - slow < 0.5,
+        "{slow}, {fast}"
+    );
+    let (_, document) = self::document(FREE, "--certify-within a=0.9..1.1 --initial x=0.5,x_dot=1");
+    let [lo, hi] = ranges(&document["outcome"]["q"])[0];
+    assert!(lo <= 1.5 && 1.5 <= hi && hi - lo < 1e-14, "{lo}, {hi}");
+}
+
+/// A start that satisfies the constraints for one value of a parameter only is no start of motions with other values.
+#[test]
+fn a_start_for_one_value_of_a_parameter_is_refused() {
+    let on_circle = "M {
+        coordinates { x; y; }
+        parameters { r > 0 = 1; m > 0 = 1; }
+        lagrangian = m*(dot(x)^2 + dot(y)^2)/2 - m*y;
+        constraints { c: x^2 + y^2 = r^2; }
+        initial { x = 0.6; dot(x) = 2; until = 0.1; }
+    }";
+    let geared = "M {
+        coordinates { x; y; }
+        parameters { k = 1; m > 0 = 1; }
+        lagrangian = m*(dot(x)^2 + dot(y)^2)/2;
+        constraints { c: dot(x) = k*dot(y); }
+        initial { x = 1; dot(x) = 2; until = 1; }
+    }";
+    // `dot(x)` and `dot(y)` follow from `dot(z)` and the constraint, which leaves one of them free.
+    let completed = "M {
+        coordinates { x; y; z; }
+        parameters { k = 1; m > 0 = 1; }
+        lagrangian = m*(dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { c: dot(z) = dot(x) + k*dot(y); }
+        initial { dot(z) = 1; until = 1; }
+    }";
+    for (text, parameter) in [(on_circle, "r"), (geared, "k"), (completed, "k")] {
+        let errors = certify(text, &format!("--certify-within {parameter}=0.9..1.1")).errors;
+        let told = format!("the start depends on `{parameter}`");
+        assert!(errors.contains(&told), "{errors}");
+        // The mass is no part of the constraint.
+        assert_eq!(
+            certify(text, "--certify-within m=0.9..1.1").exit,
+            Exit::Reached
+        );
+    }
+    // With `dot(y)`, the quasi-velocity of the frame, the start is the same for all gears.
+    let flags = "--certify-within k=0.9..1.1 --initial x_dot=2,y_dot=2 --certify-within y_dot=2..2";
+    let (exit, document) = document(geared, flags);
+    assert_eq!(exit, Exit::Reached);
+    let [slow, fast] = ranges(&document["outcome"]["qdot"])[0];
+    assert!(slow <= 1.8 && 2.2 <= fast, "{slow}, {fast}");
+}
+
+#[test]
 fn quasi_velocities_have_ranges() {
     let flags = "--until 1 --certify-within omega=0.49..0.51 --certify-within x=-0.01..0.01";
     let (exit, document) = document(SLEIGH, flags);
@@ -184,6 +249,60 @@ fn quasi_velocities_have_ranges() {
         assert!(lo - 1e-9 < q && q < hi + 1e-9);
     }
     assert!(q[0][1] - q[0][0] > 0.02);
+}
+
+/// After a map that does not change the gap, the motion is on the surface, whatever the rounding of the gap: it crosses the
+/// surface, or leaves it.
+#[test]
+fn motion_goes_on_from_the_surface_of_a_map() {
+    let section = "M {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { s: x <= 1 => reset { dot(y) = dot(y) + 1; }; }
+        initial { dot(x) = 1; until = 2; }
+    }";
+    // At the step the potential rises by V: the motion is refracted for V = 0.4, and reflected for V = 0.55.
+    let step = "M {
+        coordinates { x; y; }
+        parameters { V = 0.4; }
+        modes {
+            left { lagrangian = (dot(x)^2 + dot(y)^2)/2; initial { x = -1; dot(x) = 1; dot(y) = 0.3; until = 4; } }
+            right { lagrangian = (dot(x)^2 + dot(y)^2)/2 - V; }
+        }
+        transitions { up: left -> right when x >= 0; down: right -> left when x <= 0; }
+    }";
+    // Both modes have surfaces with the gap of the transition and with its negative.
+    let sides = "M {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        modes {
+            still { initial { x = -1; dot(x) = 1; until = 2; } }
+            pulled { forces { pull: d(x); } }
+        }
+        transitions {
+            one: still -> pulled when x >= 0;
+            two: still -> pulled when x <= 0;
+            three: pulled -> still when x >= 0;
+            four: pulled -> still when x <= 0;
+        }
+    }";
+    for (text, flags, right) in [
+        (section, "", [2.0, 1.0]),
+        (step, "", [3.0 * 0.2_f64.sqrt(), 1.2]),
+        (step, "--set V=0.55", [-3.0, 1.2]),
+        (sides, "", [1.5, 0.0]),
+    ] {
+        let (exit, document) = document(text, flags);
+        assert_eq!(exit, Exit::Reached, "{text}, {flags}: {document}");
+        assert_eq!(document["events"].as_array().unwrap().len(), 1);
+        let found = ranges(&document["outcome"]["q"]);
+        for ([lo, hi], right) in found.into_iter().zip(right) {
+            assert!(
+                lo <= right && right <= hi && hi - lo < 1e-12,
+                "{lo}, {hi}, {right}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -110,6 +110,7 @@ pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> 
         parameters: Vec::new(),
         positions: Vec::new(),
         rates: Vec::new(),
+        named: Vec::new(),
     };
     let mut strikes = Vec::new();
     let mut keep = |strike: &Strike| strikes.push(strike.clone());

@@ -195,9 +195,9 @@ records! {
     kernels::Dimensions { state, coordinates, motion, constraints, levels, surfaces, parameters }
     kernels::Chart { coordinate, ends }
     kernels::Condition { is_closed }
-    kernels::Surface { law, coefficient, conditions, others, beside, kinks, takes }
+    kernels::Surface { law, coefficient, conditions, others, beside, kinks, takes, keeps_gap }
     kernels::Level { constraint, is_zero }
-    kernels::Transition { enters, passage, has_no_side, opposite }
+    kernels::Transition { enters, passage, has_no_side, opposite, meets }
     kernels::Mode {
         tables, documentation, kernels, global, coordinates, constraints, surfaces, outputs, transitions,
     }

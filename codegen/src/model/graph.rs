@@ -8,7 +8,7 @@ use dalembert_expr::Pool;
 use super::check::{check_mode, peer};
 use super::scene::{Extras, Parts, Scene};
 use super::transition::Peer;
-use super::{Beside, Coordinate, Model, Name, Topology};
+use super::{Beside, Coordinate, Model, Name, Surface, Topology};
 use crate::diagnostics::Diagnostics;
 use crate::spec::{self, STEPS};
 
@@ -109,6 +109,23 @@ impl ModeGraph {
             );
         }
         pairs.into_iter()
+    }
+
+    /// The surfaces of the entered mode with the gap of a transition that keeps the positions, as written, and with the
+    /// negative of it.
+    pub fn meets(&self, mode: &Mode, surface: &Surface) -> [Option<usize>; 2] {
+        let Some(transition) = surface.transition.as_ref().filter(|to| to.map.is_none()) else {
+            return [None; 2];
+        };
+        let mut pool = mode.model.pool.clone();
+        let negative = pool.neg(surface.gap);
+        let entered = &self.modes[transition.enters];
+        [surface.gap, negative].map(|gap| {
+            let gap = pool.text(gap);
+            let mut others = entered.model.surfaces.iter().zip(&entered.places.surfaces);
+            let met = others.find(|(other, _)| entered.model.pool.text(other.gap) == gap);
+            met.map(|(_, place)| *place)
+        })
     }
 }
 

@@ -92,6 +92,18 @@ pub struct Reset {
     pub item: ItemId,
 }
 
+impl Model {
+    /// True if the declared reset of a surface changes nothing that its gap depends on.
+    pub fn keeps_gap(&self, surface: &Surface) -> bool {
+        let Some(reset) = &surface.reset else {
+            return false;
+        };
+        let set = reset.replacements(&self.coordinates).into_iter();
+        let set: Vec<SymbolId> = set.map(|(symbol, _)| symbol).collect();
+        !self.pool.depends_on_any(surface.gap, &set)
+    }
+}
+
 impl Reset {
     /// A reset of `n` coordinates that changes nothing.
     pub(super) fn identity(n: usize, item: ItemId) -> Self {

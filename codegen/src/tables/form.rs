@@ -186,6 +186,7 @@ impl FormOf<'_> {
             },
             kinks: kinks(&self.model.pool, surface.gap).len(),
             takes: impacting.map_or(0, |impacting| coordinates_of(&impacting.gap_alone[index])),
+            keeps_gap: self.model.keeps_gap(surface),
         }
     }
 }

@@ -180,6 +180,7 @@ fn transitions(graph: &ModeGraph, mode: &model::Mode) -> Vec<Option<Transition>>
             passage: passage(transition, mode.model.is_first_order()),
             has_no_side: transition.has_no_side,
             opposite: opposite.map(|[_, back]| *back),
+            meets: graph.meets(mode, surface),
         })
     };
     surfaces.map(leads_to).collect()

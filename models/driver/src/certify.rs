@@ -3,6 +3,8 @@
 //! The runtime computes the enclosures for an erased system of the largest capacity. Its form needs kernels over
 //! intervals, which forms loaded from a text have.
 
+mod start;
+
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::thread;
@@ -10,11 +12,11 @@ use std::thread;
 use dalembert::certified::{CertifiedImpact, CertifiedRun, Lost};
 use dalembert::erased;
 use dalembert::law::Law;
-use dalembert::numbers::{Interval, Numbers, Row};
-use dalembert::{Instance, StateError, TaylorField, Variational, VectorField};
+use dalembert::numbers::{Interval, Row};
+use dalembert::{Instance, TaylorField, Variational, VectorField};
 
 use crate::integrator::Form;
-use crate::model::{OffConstraint, Origin, Rates};
+use crate::model::Origin;
 use crate::owner::Common;
 use crate::refusal::{Refusal, Uncertified};
 
@@ -32,14 +34,18 @@ pub struct Certification {
     pub impacts: Option<u64>,
     /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges that replace the values of parameters, by index. A model with modes starts in the same state for all
-    /// values of its parameters, and the ranges below are ignored.
+    /// Ranges that replace the values of parameters, by index. Without constraints, they move the values of the origin that
+    /// are declared ones. A model with modes starts in the same state for all values of its parameters, and the ranges
+    /// below are ignored.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges that replace the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
     /// Ranges that replace velocities, by index: the origin's velocities in the global form of a model without
     /// constraints, quasi-velocities in the reduced form. They are ignored in other cases and if momenta are given.
     pub rates: Vec<(usize, Interval)>,
+    /// Marks of the velocities that the origin names, one per coordinate; the others follow from the constraints. Empty
+    /// if it names all.
+    pub named: Vec<bool>,
 }
 
 /// Enclosures of positions and velocities, one range per coordinate. If the velocities may not exist for some state,
@@ -137,19 +143,8 @@ impl Subject<'_> {
             };
             return Err(why.into());
         }
-        let values = TaylorField::parameters(&system);
-        let mut parameters =
-            <Common<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
-        let entries = parameters.as_mut_slice().iter_mut();
-        for (entry, value) in entries.zip(values.as_slice()) {
-            *entry = Interval::of(*value);
-        }
-        for &(index, range) in &request.parameters {
-            if let Some(entry) = parameters.as_mut_slice().get_mut(index) {
-                *entry = range;
-            }
-        }
-        let start = self.start(&system, &parameters, request)?;
+        let parameters = start::parameters(&system, &request.parameters);
+        let start = start::ranges(self, &system, request)?;
         let shown = Shown {
             system: &system,
             parameters,
@@ -178,62 +173,6 @@ impl Subject<'_> {
             steps: run.steps(),
             lost: ended.err(),
         })
-    }
-
-    /// Ranges of the components of the initial states.
-    fn start(
-        &self,
-        system: &Common<'_>,
-        parameters: &<Common<'_> as TaylorField>::Parameters<Interval>,
-        request: &Certification,
-    ) -> Result<Vec<Interval>, Refusal> {
-        type Positions = <Common<'static> as Variational>::Configuration<Interval>;
-        let n = self.origin.q.len();
-        let tables = &system.form().tables;
-        if !tables.modes.is_empty() {
-            return Ok(self.state.iter().copied().map(Interval::point).collect());
-        }
-        let dimensions = &tables.dimensions;
-        let is_free = request.form == Form::Global && dimensions.constraints == 0;
-        let boxed = |values: &[f64], ranges: &[(usize, Interval)]| {
-            let mut row = Positions::zeros(n);
-            for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
-                *entry = Interval::of(*value);
-            }
-            replace(row.as_mut_slice(), ranges);
-            row
-        };
-        let mut start: Vec<Interval> = match (&self.origin.rates, self.origin.policy) {
-            (Rates::Velocities(qdot), OffConstraint::Error | OffConstraint::Keep) => {
-                let of_box = |ranges: [&[(usize, Interval)]; 2]| {
-                    let (q, qdot) = (boxed(&self.origin.q, ranges[0]), boxed(qdot, ranges[1]));
-                    let row = system.composed(parameters, Interval::ZERO, &q, &qdot);
-                    row.map_err(StateError::from)
-                };
-                let row = match is_free {
-                    true => of_box([&request.positions, &request.rates])?,
-                    // The given velocities satisfy the constraints at the origin only. The positions are widened below.
-                    false => of_box([&[], &[]])?,
-                };
-                row.as_slice().to_vec()
-            }
-            _ => self.state.iter().copied().map(Interval::point).collect(),
-        };
-        let (q, motion) = start.split_at_mut(n);
-        replace(q, &request.positions);
-        if request.form == Form::Reduced {
-            replace(motion, &request.rates);
-        }
-        debug_assert_eq!(start.len(), system.state_len(), "a state of the form");
-        Ok(start)
-    }
-}
-
-fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
-    for &(index, range) in ranges {
-        if let Some(entry) = entries.get_mut(index) {
-            *entry = range;
-        }
     }
 }
 

@@ -22,6 +22,20 @@ pub enum Uncertified {
     /// The scene was declared without `variations`, which the derivatives of a motion need.
     #[error("certified motion needs `variations`; add it to the declaration of the scene")]
     WithoutVariations,
+    /// The start of a model with constraints depends on a parameter with a range, so that one start does not belong to all
+    /// values of the parameter.
+    #[error(
+        "the start depends on `{parameter}`: it satisfies the constraints, or follows from them, for one value of `{parameter}` only; certify single values with --set, or give ranges of all quasi-velocities"
+    )]
+    MovingStart {
+        /// The name of the parameter.
+        parameter: &'static str,
+    },
+    /// A parameter with a range and momenta in the reduced form.
+    #[error(
+        "quasi-velocities follow from momenta for single values of parameters only; give velocities (--qdot) with ranges of parameters"
+    )]
+    MomentaOfRanges,
     /// The operating system does not provide a thread with the required stack.
     #[error("certified motion needs 16 MiB of stack, which the system does not provide")]
     NoThread,

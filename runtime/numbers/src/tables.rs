@@ -78,6 +78,8 @@ pub struct Surface {
     pub kinks: usize,
     /// Bit set of the coordinates that the gap depends on. The last bit stands for all coordinates from its index on.
     pub takes: u64,
+    /// True if the declared reset changes nothing that the gap depends on, so that the state after it lies on the surface.
+    pub keeps_gap: bool,
 }
 
 /// A position level: a function of the positions that a constraint keeps constant.
@@ -114,6 +116,9 @@ pub struct Transition {
     pub has_no_side: bool,
     /// Between first-order modes, the surface of the model whose transition can lead back at once.
     pub opposite: Option<usize>,
+    /// The surfaces of the model that bound the entered mode and have the same gap, and the negative of it, if the positions
+    /// are kept.
+    pub meets: [Option<usize>; 2],
 }
 
 /// A mode of a model: its own tables, and the places of its quantities among those of the model.

@@ -26,6 +26,8 @@ pub(super) enum Side {
     Above,
     /// The gap is not positive.
     Below,
+    /// The gap is 0.
+    On,
 }
 
 /// A surface that may be met, with a fraction of the step up to which no surface is met.
@@ -217,14 +219,14 @@ impl<Sys: Variational + Impacting> Surfaces<'_, '_, Sys> {
             return Ok(Side::Unknown);
         }
         let (rises, falls) = (gap.rate.lo > 0.0, gap.rate.hi < 0.0);
-        if side == Side::Above && rises {
+        if matches!(side, Side::Above | Side::On) && rises {
             return Ok(Side::Above);
         }
         let is_behind = gap.value.hi < 0.0;
         if self.is_passable(surface) {
             match (is_behind, side) {
                 (true, _) => return Ok(Side::Unknown),
-                (_, Side::Below) if falls => return Ok(Side::Below),
+                (_, Side::Below | Side::On) if falls => return Ok(Side::Below),
                 _ if rises => return Ok(Side::Unknown),
                 _ => {}
             }

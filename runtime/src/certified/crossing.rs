@@ -333,10 +333,10 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             true => {
                 let system = self.surfaces.field.system;
                 let mut sides = PerSurface::all(&system.zero_gaps(), Side::Unknown);
-                // The opposite transition has the same surface, and the state is unchanged. The state therefore lies on
-                // that surface and leaves it.
-                if let Some(back) = system.opposite(surface) {
-                    sides[back] = Side::Above;
+                for (other, side) in sides.iter_mut().enumerate() {
+                    if system.lands_on(surface, other) {
+                        *side = Side::On;
+                    }
                 }
                 sides
             }

@@ -237,6 +237,14 @@ pub trait Impacting: System {
         None
     }
 
+    /// True if the state after the declared reset or the transition of a surface certainly lies on the surface `other`: on
+    /// the same surface after a reset that does not change its gap, or on a surface of the entered mode with the same gap, or
+    /// its negative, after a transition that keeps the positions.
+    fn lands_on(&self, surface: usize, other: usize) -> bool {
+        let _ = (surface, other);
+        false
+    }
+
     /// The state after the declared reset of a surface, or in the mode that the surface leads to.
     ///
     /// # Errors

@@ -125,6 +125,28 @@ pub trait Variational: TaylorField + System + Sized {
         change: impl FnOnce(&mut [L], &mut [L]),
     ) -> Result<Self::Row<L>, Fault>;
 
+    /// The declared initial positions and velocities of the mode in which states are made, one number per coordinate; 0
+    /// for undeclared values. See [`Instance::initial`](crate::Instance::initial).
+    ///
+    /// # Errors
+    /// A [`Fault`] where an expression of the declaration does not exist.
+    fn declared_start<L: Numbers>(
+        &self,
+        parameters: &Self::Parameters<L>,
+    ) -> Result<[Self::Configuration<L>; 2], Fault>;
+
+    /// The residuals `eta^a(qdot) + eta^a_0` of all constraints at positions and velocities, followed by zeros.
+    ///
+    /// # Errors
+    /// [`Fault::NotDerived`] for a system without constraints.
+    fn residuals_at<L: Numbers>(
+        &self,
+        parameters: &Self::Parameters<L>,
+        t: L,
+        q: &Self::Configuration<L>,
+        qdot: &Self::Configuration<L>,
+    ) -> Result<Self::Configuration<L>, Fault>;
+
     /// The residuals `eta^a(qdot) + eta^a_0` of the constraints that a state may violate, then the levels `f^k` of the
     /// constraints that have one. For a model with modes, the components that no variation changes follow.
     ///

@@ -4,7 +4,7 @@ use super::part::{has_modes, number_of};
 use super::passage::passage;
 use super::system::{coefficient, over_numbers};
 use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
-use super::{Beside, Condition, Surface, Tables};
+use super::{Beside, Condition, Passage, Surface, Tables};
 use crate::contract::{Along, Impacting, System, VectorField, after_reset};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
@@ -481,6 +481,19 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     fn opposite(&self, surface: usize) -> Option<usize> {
         let (part, _) = Part::of_surface(self, surface)?;
         part.transition(surface)?.1.opposite
+    }
+
+    fn lands_on(&self, surface: usize, other: usize) -> bool {
+        let Some((part, local)) = Part::of_surface(self, surface) else {
+            return false;
+        };
+        match part.transition(surface) {
+            Some((_, transition)) => {
+                let is_met = other == surface || transition.meets.contains(&Some(other));
+                is_met && transition.passage != Passage::Declared
+            }
+            None => other == surface && part.tables.surfaces[local].keeps_gap,
+        }
     }
 
     fn reset(

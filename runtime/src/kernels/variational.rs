@@ -146,15 +146,25 @@ impl<S: Declared> Part<'_, S> {
         let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
             kernels.reset(local, at, values)
         };
+        self.both_rows(kernel, arguments, [state, &[]]).map(Some)
+    }
+
+    /// Positions and velocities of the part that a kernel gives.
+    fn both_rows<L: Numbers>(
+        &self,
+        kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
+        arguments: Arguments<'_, L>,
+        places: [&[L]; 2],
+    ) -> Result<[S::Positions<L>; 2], Fault> {
         let n = self.lengths()[0];
-        let both: S::Room<L> = self.row((kernel, [2 * n; 2]), arguments, [state, &[]])?;
+        let both: S::Room<L> = self.row((kernel, [2 * n; 2]), arguments, places)?;
         let (q, qdot) = both.as_slice()[..2 * n].split_at(n);
         let length = self.system_dimensions().coordinates;
-        Ok(Some([q, qdot].map(|values| {
+        Ok([q, qdot].map(|values| {
             let mut row = S::Positions::<L>::zeros(length);
             row.as_mut_slice()[..n].copy_from_slice(values);
             row
-        })))
+        }))
     }
 
     /// The state after the transition through a surface of the part. `None` if refraction is not available
@@ -333,6 +343,34 @@ impl<S: HasVariations> Variational for S {
         let [q, qdot] = [part.gathered_row(&q), part.gathered_row(&qdot)];
         let places = [q.as_slice(), qdot.as_slice()];
         part.row_by(S::Kernels::motion, (parameters.as_slice(), t), places)
+    }
+
+    fn declared_start<L: Numbers>(
+        &self,
+        parameters: &<S as TaylorField>::Parameters<L>,
+    ) -> Result<[S::Positions<L>; 2], Fault> {
+        let part = Part::start(self);
+        let arguments = (parameters.as_slice(), L::ZERO);
+        let both = part.both_rows(S::Kernels::initial, arguments, [&[], &[]])?;
+        Ok(both.map(|row| part.spread_row(row)))
+    }
+
+    fn residuals_at<L: Numbers>(
+        &self,
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        q: &S::Positions<L>,
+        qdot: &S::Positions<L>,
+    ) -> Result<S::Positions<L>, Fault> {
+        let part = Part::start(self);
+        let m = part.tables.dimensions.constraints;
+        let [q, qdot] = [part.gathered_row(q), part.gathered_row(qdot)];
+        let arguments = (parameters.as_slice(), t);
+        let kernel = (S::Kernels::residuals, [2 * m; 2]);
+        let both: S::Room<L> = part.row(kernel, arguments, [q.as_slice(), qdot.as_slice()])?;
+        let mut residuals = q.zeroed();
+        residuals.as_mut_slice()[..m].copy_from_slice(&both.as_slice()[..m]);
+        Ok(residuals)
     }
 
     fn deviations<L: Numbers>(

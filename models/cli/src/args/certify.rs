@@ -25,8 +25,10 @@ pub struct CertifyArgs {
     )]
     pub certify: bool,
     /// Certify all motions for which a coordinate, a velocity `x_dot` (with constraints, a quasi-velocity) or a
-    /// parameter starts in this range. May be repeated. Ends that are not doubles are rounded outward. Values that
-    /// follow from the constraints are computed at the middle of the ranges.
+    /// parameter starts in this range. May be repeated. Ends that are not doubles are rounded outward. Declared
+    /// values that depend on such a parameter move with it; with constraints they are refused, as is a start that
+    /// satisfies the constraints for one value of the parameter only. Values that follow from the constraints are computed
+    /// at the middle of other ranges.
     #[arg(
         long,
         value_name = "NAME=LO..HI",

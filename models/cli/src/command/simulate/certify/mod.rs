@@ -4,7 +4,9 @@ mod document;
 mod report;
 mod within;
 
-use dalembert_driver::{AnyModel, Certification, Certified, OffConstraint, Refusal, Strike};
+use dalembert_driver::{
+    AnyModel, Beginning, Certification, Certified, OffConstraint, Refusal, Strike,
+};
 
 use self::within::Within;
 use crate::args::SimulateArgs;
@@ -45,8 +47,13 @@ pub(super) fn run(
         ));
     }
     let within = Within::parse(model.as_mut(), settings.form, &args.certify)?;
+    let mut named = Vec::new();
     let origin = initial_state_with(model.as_ref(), &args.run.state, |beginning| {
-        within.begin(settings.form, beginning)
+        within.begin(settings.form, beginning)?;
+        if let Beginning::Named(start) = beginning {
+            named.clone_from(&start.named);
+        }
+        Ok(())
     })?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let request = Certification {
@@ -57,6 +64,7 @@ pub(super) fn run(
         parameters: within.parameters,
         positions: within.positions,
         rates: within.rates,
+        named,
     };
     let mut strikes = Vec::new();
     let certified = model.certify(&origin, &request, &mut |strike| {
