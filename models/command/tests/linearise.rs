@@ -463,14 +463,96 @@ fn the_stability_of_a_fold_is_open() {
         assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
         done.output
     };
-    for torque in ["T=1", "T=1.000000000001"] {
-        let told = stability(&format!("--set {torque}"));
-        assert!(told.contains("not decided"), "{told}");
-    }
+    let told = stability("--set T=1");
+    assert!(told.contains("not decided"), "{told}");
+    // A larger torque turns the pendulum on and on.
+    let done = run_on(text, "linearise - --trim --set T=1.000000000001");
+    assert!(
+        done.output.contains("no equilibrium was found"),
+        "{}",
+        done.output
+    );
     // For a smaller torque, the lower equilibrium is stable and the upper one is not.
     assert!(stability("--set T=0.9").contains("stable: all real parts are negative"));
     let upper = stability("--set T=0.9 --initial th=2");
     assert!(upper.contains("unstable"), "{upper}");
+}
+
+/// At a multiple root the eigenvalue is 0. The search ends near the root, where it is not.
+#[test]
+fn the_stability_at_a_multiple_root_is_open() {
+    for field in [
+        "dot(x) = -x^3; dot(y) = -y;",
+        "dot(x) = x^2; dot(y) = -y;",
+        "dot(x) = -x^3 + 3*x^2 - 3*x + 1; dot(y) = -y;",
+        "dot(x) = -x^3; dot(y) = -y + x^3;",
+        "dot(x) = -(x^2 - 2*x + 1); dot(y) = -y;",
+        "dot(x) = exp(x - 1) - x; dot(y) = -y;",
+        "dot(x) = -(cosh(x) - 1); dot(y) = -y;",
+        "dot(x) = sin(x) - x; dot(y) = -y;",
+        "dot(x) = x - tan(x); dot(y) = -y;",
+        "dot(x) = 0.25 - x + x^2; dot(y) = -y;",
+        "dot(x) = -(x^3 - 9*x^2 + 24*x - 20); dot(y) = x - 2 - y;",
+    ] {
+        let text = format!("M {{ coordinates {{ x; y; }} field {{ {field} }} }}");
+        let done = run_on(&text, "linearise - --trim --initial x=1.2,y=0.3");
+        assert_eq!(done.exit, Exit::Reached, "{field}: {}", done.errors);
+        let told = &done.output;
+        assert!(told.contains("equilibrium yes"), "{field}: {told}");
+        let open = "1 eigenvalue with real part 0 up to rounding";
+        assert!(told.contains(open), "{field}: {told}");
+    }
+}
+
+/// The rates become small, but there is no equilibrium.
+#[test]
+fn slow_motion_is_no_equilibrium() {
+    for (model, start) in [
+        (
+            "M { coordinates { x; } field { dot(x) = exp(-x); } }",
+            "x=1",
+        ),
+        (
+            "M { coordinates { x; } field { dot(x) = exp(-x); } }",
+            "x=30",
+        ),
+        (
+            "M { coordinates { x; } lagrangian = dot(x)^2/2 + exp(-x); forces { f: -dot(x)*d(x); } }",
+            "x=5",
+        ),
+        (
+            "M { coordinates { x; } field { dot(x) = 1e-12*(2 + sin(x)); } }",
+            "x=1",
+        ),
+        ("M { coordinates { x; } field { dot(x) = 1e-12; } }", "x=1"),
+    ] {
+        for trim in ["--trim", ""] {
+            let line = format!("linearise - {trim} --initial {start}");
+            let done = run_on(model, &line);
+            let told = [done.output, done.errors].concat();
+            let is_said = told.contains("no equilibrium") || told.contains("equilibrium no");
+            assert!(is_said && !told.contains("stability"), "{model}: {told}");
+        }
+    }
+}
+
+/// By its eigenvalues at any time, the first model is stable. It has the motion `exp(t/2) (cos(t), -sin(t))`.
+#[test]
+fn eigenvalues_at_one_time_decide_nothing() {
+    let grows = "M {
+        coordinates { x; y; }
+        field {
+            dot(x) = (-1 + 1.5*cos(t)^2)*x + (1 - 1.5*sin(t)*cos(t))*y;
+            dot(y) = (-1 - 1.5*sin(t)*cos(t))*x + (-1 + 1.5*sin(t)^2)*y;
+        }
+    }";
+    let told = run_on(grows, "linearise - --trim --initial x=0.01").output;
+    assert!(told.contains("equilibrium yes"), "{told}");
+    assert!(told.contains("the equations depend on time"), "{told}");
+    let driven = "M { coordinates { x; } lagrangian = dot(x)^2/2 - x^2/2; forces { f: cos(t)*d(x) - dot(x)*d(x); } }";
+    let told = run_on(driven, "linearise - --trim --initial x=0.1").output;
+    let unsteady = "equilibrium no: at t = 0.1 the rates are not 0";
+    assert!(told.contains(unsteady), "{told}");
 }
 
 #[test]

@@ -12,6 +12,9 @@ use super::sample::Plant;
 const DECADES: u32 = 13;
 const DECADE: f64 = 0.1;
 
+/// Value of a component that may be the rounding error of 0.
+const ROUNDED: f64 = 1e-13;
+
 /// Smallest jump, as a fraction of the largest derivative.
 const JUMP: f64 = 1e-6;
 
@@ -23,16 +26,12 @@ pub(super) fn kinks<S: Instance + Variational>(
     plant: &Plant<'_, S>,
     (state, inputs): (&[f64], &[f64]),
 ) -> Vec<usize> {
-    let is_kinked = |index: &usize| {
+    let is_kinked_at = |index: usize, size: f64| {
         let slopes = |shift: f64| {
             let mut beside = state.to_vec();
-            beside[*index] += shift;
+            beside[index] += shift;
             let sample = plant.at(&beside, inputs).ok()?;
             Some(sample.by_rates)
-        };
-        let size = match state[*index] {
-            0.0 => 1.0,
-            value => value.abs(),
         };
         let jumps = |k: u32| {
             let distance = size * DECADE.powi(k as i32);
@@ -48,6 +47,12 @@ pub(super) fn kinks<S: Instance + Variational>(
         };
         let rows = jumps.iter().map(Vec::len).max().unwrap_or(0);
         (0..rows).any(|row| stays(&of_row(row)))
+    };
+    let is_kinked = |index: &usize| match state[*index].abs() {
+        0.0 => is_kinked_at(*index, 1.0),
+        // A search for an equilibrium ends beside a kink at 0, by a rounding error.
+        value if value < ROUNDED => is_kinked_at(*index, 1.0) || is_kinked_at(*index, value),
+        value => is_kinked_at(*index, value),
     };
     (0..state.len()).filter(is_kinked).collect()
 }

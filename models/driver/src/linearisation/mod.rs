@@ -10,12 +10,14 @@
 //! | file | job |
 //! |---|---|
 //! | `sample.rs` | the rates and the outputs at a state, with their derivatives |
+//! | `nearby.rs` | eigenvalues at the states that rounding does not tell from an equilibrium |
 //! | `kinks.rs` | places where the derivatives of the rates jump |
 //! | `spectrum.rs` | eigenvalues, and how far rounding may move them |
 //! | `trim.rs` | an equilibrium near a state |
 //! | `sampled.rs` | the motion from one sample to the next, across impacts |
 
 mod kinks;
+mod nearby;
 mod sample;
 mod sampled;
 mod spectrum;
@@ -27,10 +29,10 @@ use dalembert::math::larger;
 use dalembert::{Fault, Instance, Outcome, Scene, Undefined};
 use thiserror::Error;
 
-use crate::least_squares::damped;
 use crate::names;
 use crate::refusal::Refusal;
 use kinks::kinks;
+use nearby::nearby;
 use sample::{Plant, Sample};
 pub use sampled::{Sampling, Stride};
 use spectrum::{margins, spectrum};
@@ -39,9 +41,11 @@ pub use trim::Trim;
 /// Largest rate at an equilibrium, as a fraction of its largest term.
 const AT_REST: f64 = 1e-9;
 
-/// Distance between an equilibrium and the neighbours at which its stability is compared, in Newton steps. At a double
-/// root, one Newton step covers half of the distance to the root.
-const BEYOND: f64 = 4.0;
+/// Rounding error of a component that is far smaller than the largest one, relative to that; and of a rate, relative to 1.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
+/// Times after that of the linearisation at which an equilibrium of equations that depend on time has to be at rest, too.
+const LATER: [f64; 5] = [0.1, 0.37, 1.0, 2.9, 7.3];
 
 /// Linearisation of a model at a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,8 +81,12 @@ pub struct Linearisation {
     pub(crate) margins: Vec<f64>,
     /// Indices of the components across whose values the derivatives of the rates jump.
     pub kinks: Vec<usize>,
-    /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`].
+    /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`]. None after a search.
     pub unsteady: Vec<usize>,
+    /// True if the equations depend on time: then eigenvalues at one time do not decide the stability.
+    pub depends_on_time: bool,
+    /// A later time at which the rates are not 0, if they are 0 at `t`.
+    pub unsteady_at: Option<f64>,
     /// Number of levels that the constraints conserve. Each level makes one eigenvalue 0, which belongs to a direction
     /// off the constraints.
     pub levels: usize,
@@ -100,26 +108,58 @@ pub enum Tendency {
     Neutral(usize),
     /// The derivatives of the rates jump here: there is no linearisation.
     Kinked,
+    /// The equations depend on time: eigenvalues at one time do not decide the stability.
+    OfOneTime,
 }
 
 impl Linearisation {
+    /// True if the state is at rest, up to rounding.
+    pub fn is_equilibrium(&self) -> bool {
+        self.unsteady.is_empty() && self.unsteady_at.is_none()
+    }
+
+    /// For each eigenvalue, the largest difference of its real part from that at the states nearby, in order of size. At a
+    /// multiple root it is as large as the eigenvalue, which vanishes at the root.
+    fn spreads(&self, eigenvalues: &[[f64; 2]]) -> Vec<f64> {
+        let order = |spectrum: &[[f64; 2]]| {
+            let mut order: Vec<usize> = (0..spectrum.len()).collect();
+            order.sort_by(|&i, &j| spectrum[i][0].total_cmp(&spectrum[j][0]));
+            order
+        };
+        let mut spreads = vec![0.0; eigenvalues.len()];
+        let here = order(eigenvalues);
+        for spectrum in &self.nearby {
+            for (&i, &j) in here.iter().zip(&order(spectrum)) {
+                let difference = eigenvalues[i][0] - spectrum[j][0];
+                spreads[i] = larger(spreads[i], difference.abs());
+            }
+        }
+        spreads
+    }
+
     /// The stability by the eigenvalues; `None` if the state is not an equilibrium, or if the eigenvalues are unknown.
     pub fn tendency(&self) -> Option<Tendency> {
         let eigenvalues = self
             .eigenvalues
             .as_ref()
-            .filter(|_| self.unsteady.is_empty())?;
+            .filter(|_| self.is_equilibrium())?;
+        if self.depends_on_time {
+            return Some(Tendency::OfOneTime);
+        }
         if !self.kinks.is_empty() {
             return Some(Tendency::Kinked);
         }
+        let spreads = self.spreads(eigenvalues);
         // The least number of eigenvalues with this sign of the real part, over the states that may be the equilibrium.
         let least = |sign: f64| {
             let others = self.nearby.iter().map(|spectrum| {
                 let signs = spectrum.iter().filter(|[re, _]| sign * re > 0.0);
                 signs.count()
             });
-            let pairs = eigenvalues.iter().zip(&self.margins);
-            let counted = pairs.filter(|([re, _], margin)| sign * re > **margin);
+            let bounds = self.margins.iter().zip(&spreads);
+            let pairs = eigenvalues.iter().zip(bounds);
+            let counted =
+                pairs.filter(|([re, _], (margin, spread))| sign * re > margin.max(2.0 * *spread));
             others.fold(counted.count(), usize::min)
         };
         let (growing, decaying) = (least(1.0), least(-1.0));
@@ -265,7 +305,21 @@ fn linearise<S: Instance + Scene + Variational>(
     }
     let sample = plant.at(&state, &inputs)?;
     let moving = place.trim.as_ref().map_or(&[][..], |trim| &trim.moving);
-    let unsteady = unsteady(&sample, &state, &inputs, moving);
+    let unsteady = match steps {
+        Some(_) => Vec::new(),
+        None => unsteady(&sample, &state, &inputs, moving, largest(state.iter())),
+    };
+    let depends_on_time = system.depends_on_time();
+    let later = LATER.into_iter().filter(|_| depends_on_time);
+    let mut later = later.map(|after| place.t + after);
+    let unsteady_at = later.find(|&t| {
+        let then = Plant::new(system, t).at(&state, &inputs);
+        unsteady.is_empty()
+            && then.is_ok_and(|sample| {
+                let unit = larger(largest(state.iter()), 1.0);
+                !self::unsteady(&sample, &state, &inputs, moving, unit).is_empty()
+            })
+    });
     let nearby = match unsteady.is_empty() {
         true => nearby(&plant, &sample, (&state, &inputs), moving),
         false => Vec::new(),
@@ -301,6 +355,8 @@ fn linearise<S: Instance + Scene + Variational>(
         nearby,
         kinks,
         unsteady,
+        depends_on_time,
+        unsteady_at,
         levels: sample.levels.len(),
         rates: sample.rates,
         output_names: values
@@ -324,14 +380,23 @@ fn split(rows: &[Vec<f64>], columns: usize) -> [Vec<Vec<f64>>; 2] {
     [left, right]
 }
 
-/// Components whose rates are not 0 up to the rounding of their terms.
-fn unsteady(sample: &Sample, state: &[f64], inputs: &[f64], moving: &[usize]) -> Vec<usize> {
+/// Components whose rates are not 0: they exceed a fraction of their largest term, and what rounding errors of a component of
+/// the size `unit` make of them.
+fn unsteady(
+    sample: &Sample,
+    state: &[f64],
+    inputs: &[f64],
+    moving: &[usize],
+    unit: f64,
+) -> Vec<usize> {
     let sizes = sizes(sample, state, inputs);
     let rates = sample.rates.iter().zip(&sizes).enumerate();
+    let is_unsteady = |index: usize, rate: f64, size: f64| {
+        let rounding = ROUNDED * unit * largest(sample.by_rates[index].iter());
+        !moving.contains(&index) && rate.abs() > AT_REST * size + rounding
+    };
     rates
-        .filter(|(index, (rate, size))| {
-            !moving.contains(index) && rate.abs() > AT_REST * size.max(1.0)
-        })
+        .filter(|(index, (rate, size))| is_unsteady(*index, **rate, **size))
         .map(|(index, _)| index)
         .collect()
 }
@@ -341,43 +406,10 @@ fn sizes(sample: &Sample, state: &[f64], inputs: &[f64]) -> Vec<f64> {
     let values: Vec<f64> = state.iter().chain(inputs).copied().collect();
     let size = |slopes: &Vec<f64>| {
         let terms = slopes.iter().zip(&values);
-        let terms = terms.map(|(slope, value)| slope * value.abs().max(1.0));
+        let terms = terms.map(|(slope, value)| slope * value);
         terms.fold(0.0, |most, term: f64| larger(most, term.abs()))
     };
     sample.by_rates.iter().map(size).collect()
-}
-
-/// The eigenvalues at the states [`BEYOND`] Newton steps away in both directions, where the equations are defined. The
-/// residual of a Newton step is at least the rounding of the rate's terms.
-fn nearby<S: Instance + Variational>(
-    plant: &Plant<'_, S>,
-    sample: &Sample,
-    (state, inputs): (&[f64], &[f64]),
-    moving: &[usize],
-) -> Vec<Vec<[f64; 2]>> {
-    let n = state.len();
-    let sizes = sizes(sample, state, inputs);
-    let rates = sample.rates.iter().zip(&sizes).enumerate();
-    let residuals: Vec<f64> = rates
-        .map(|(index, (rate, size))| match moving.contains(&index) {
-            true => 0.0,
-            false => rate.abs().max(f64::EPSILON * size).copysign(*rate),
-        })
-        .collect();
-    let columns: Vec<Vec<f64>> = (0..n)
-        .map(|j| sample.by_rates.iter().map(|row| row[j]).collect())
-        .collect();
-    let damping = f64::EPSILON.sqrt() * largest(columns.iter().flatten());
-    let Some(step) = damped(&columns, &residuals, damping) else {
-        return Vec::new();
-    };
-    let beside = |factor: f64| {
-        let moved = state.iter().zip(&step);
-        let moved: Vec<f64> = moved.map(|(value, step)| value + factor * step).collect();
-        let sample = plant.at(&moved, inputs).ok()?;
-        spectrum::<S>(&split(&sample.by_rates, n)[0])
-    };
-    [-BEYOND, BEYOND].into_iter().filter_map(beside).collect()
 }
 
 /// The largest absolute value.

@@ -9,7 +9,7 @@ use dalembert::math::larger;
 
 use super::sample::{Plant, Sample};
 use super::{Unlinear, largest};
-use crate::least_squares::damped;
+use crate::least_squares::{damped, solve};
 use crate::linear::norm;
 
 /// Maximum number of steps.
@@ -20,6 +20,22 @@ const SETTLED: f64 = 1e-12;
 
 /// Largest accepted residual of an equilibrium, in the same unit.
 const SOLVED: f64 = 1e-9;
+
+/// Maximum number of steps after the search, and the ratio of two successive steps above which they do not lead to a root.
+const LAST_STEPS: u32 = 100;
+const SHRINKS: f64 = 0.96;
+
+/// Damping of these steps where the equations are singular, in units of the length of a column.
+const FAINT: f64 = 1e-12;
+
+/// Length of such a step that is a rounding error, relative to the values.
+const ROUNDED: f64 = 1e-15;
+
+/// Largest length of a step that rounding forbids, relative to the values or to 1.
+pub(super) const NEAR: f64 = 1e-4;
+
+/// Residual that is a rounding error, in units of the largest derivative times the largest value.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// Largest damping of a step, as a multiple of the smaller one of two numbers: the norm of the residuals and the largest
 /// derivative.
@@ -114,7 +130,9 @@ pub(super) fn settle<S: Instance + Variational>(
     while steps < STEPS && walk.size(&walk.sample) > SETTLED * walk.unit() && walk.step() {
         steps += 1;
     }
+    let converged = walk.converge();
     walk.check()?;
+    steps += converged?;
     walk.unwind(state);
     state.copy_from_slice(&walk.values[..walk.count]);
     inputs.copy_from_slice(&walk.values[walk.count..]);
@@ -152,6 +170,41 @@ impl<S: Instance + Variational> Walk<'_, S> {
         false
     }
 
+    /// Newton steps from a state with small residuals to the root. Residuals also become small where there is no root: those of
+    /// `exp(-x)` do far away, and those of a slow motion are small everywhere. The steps do not become shorter there. At a
+    /// multiple root each is shorter than the one before by a constant factor.
+    fn converge(&mut self) -> Result<u32, Unlinear> {
+        let mut before = f64::INFINITY;
+        for made in 0..LAST_STEPS {
+            let residuals = self.equations.residuals(&self.sample);
+            let residuals: Vec<f64> = residuals.iter().map(|it| it.1).collect();
+            let columns = self.equations.columns(&self.sample, &self.free);
+            let Some(change) = newton(&columns, &residuals) else {
+                return Ok(made);
+            };
+            let length = norm(&change);
+            let terms = largest(columns.iter().flatten()) * largest(self.values.iter());
+            let is_constant = norm(&residuals) > ROUNDINGS * terms + f64::MIN_POSITIVE;
+            if is_constant && is_unchanged(&columns, &residuals, &change) {
+                return Err(self.failure());
+            }
+            if length <= ROUNDED * norm(&self.values) {
+                return Ok(made);
+            }
+            let shrinks = length <= SHRINKS * before;
+            if !shrinks || !self.improve(&change, norm(&residuals)) {
+                let is_near = length <= NEAR * larger(norm(&self.values), 1.0);
+                let is_rounding = norm(&residuals) <= ROUNDINGS * self.unit();
+                return match is_near && is_rounding {
+                    true => Ok(made),
+                    false => Err(self.failure()),
+                };
+            }
+            before = length;
+        }
+        Ok(LAST_STEPS)
+    }
+
     /// Subtracts a change if this reduces the residuals and the model allows the state.
     fn improve(&mut self, change: &[f64], size: f64) -> bool {
         let mut next = self.values.clone();
@@ -181,16 +234,57 @@ impl<S: Instance + Variational> Walk<'_, S> {
 
     /// Refuses residuals above [`SOLVED`].
     fn check(&self) -> Result<(), Unlinear> {
-        let residuals = self.equations.residuals(&self.sample);
-        let worst = residuals
-            .iter()
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        match worst {
-            Some(&(component, rate)) if rate.abs() > SOLVED * self.unit() => Err(match component {
-                Some(component) => Unlinear::NoEquilibrium { component, rate },
-                None => Unlinear::OffLevel { excess: rate },
-            }),
-            _ => Ok(()),
+        let worst = self.worst();
+        match worst.is_some_and(|(_, rate)| rate.abs() > SOLVED * self.unit()) {
+            true => Err(self.failure()),
+            false => Ok(()),
         }
     }
+
+    /// The largest residual.
+    fn worst(&self) -> Option<(Option<usize>, f64)> {
+        let residuals = self.equations.residuals(&self.sample).into_iter();
+        residuals.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    }
+
+    /// The search has failed.
+    fn failure(&self) -> Unlinear {
+        match self.worst() {
+            Some((Some(component), rate)) => Unlinear::NoEquilibrium { component, rate },
+            Some((None, excess)) => Unlinear::OffLevel { excess },
+            None => Unlinear::NoEquilibrium {
+                component: 0,
+                rate: 0.0,
+            },
+        }
+    }
+}
+
+/// The Newton step from residuals, with derivatives by column; it is to be subtracted. Columns are scaled to the length 1, so
+/// that a variable whose derivatives vanish at the root counts like others.
+pub(super) fn newton(columns: &[Vec<f64>], residuals: &[f64]) -> Option<Vec<f64>> {
+    let lengths = columns.iter().map(|column| norm(column));
+    let units: Vec<f64> = lengths
+        .map(|length| if length > 0.0 { length } else { 1.0 })
+        .collect();
+    let scaled = columns.iter().zip(&units);
+    let scaled: Vec<Vec<f64>> = scaled
+        .map(|(column, unit)| column.iter().map(|slope| slope / unit).collect())
+        .collect();
+    let mut change = solve(&scaled, residuals).or_else(|| damped(&scaled, residuals, FAINT))?;
+    for (change, unit) in change.iter_mut().zip(&units) {
+        *change /= unit;
+    }
+    Some(change)
+}
+
+/// True if a change hardly reduces the residuals of the linear equations, because they are singular along its direction.
+fn is_unchanged(columns: &[Vec<f64>], residuals: &[f64], change: &[f64]) -> bool {
+    let mut left = residuals.to_vec();
+    for (column, change) in columns.iter().zip(change) {
+        for (left, slope) in left.iter_mut().zip(column) {
+            *left -= slope * change;
+        }
+    }
+    norm(&left) > 0.5 * norm(residuals)
 }

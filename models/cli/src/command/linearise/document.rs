@@ -45,7 +45,7 @@ fn write_found(
     document.field("outputs", named(outputs, &found.outputs))?;
     let trim = found.steps.map(|steps| json!({ "steps": steps }));
     document.field("trim", trim)?;
-    document.field("equilibrium", found.unsteady.is_empty())?;
+    document.field("equilibrium", found.is_equilibrium())?;
     for (name, rows) in [
         ("A", &found.a),
         ("B", &found.b),
@@ -61,7 +61,7 @@ fn write_found(
     let stability = found.tendency().map(|tendency| match tendency {
         Tendency::Stable => "stable",
         Tendency::Unstable(_) => "unstable",
-        Tendency::Neutral(_) | Tendency::Kinked => "undecided",
+        Tendency::Neutral(_) | Tendency::Kinked | Tendency::OfOneTime => "undecided",
     });
     document.field("stability", stability)?;
     document.rows("samples", found.strides.iter().map(stride))

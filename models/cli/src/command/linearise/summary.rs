@@ -88,7 +88,10 @@ fn assigned(names: &[&str], values: &[f64]) -> String {
 
 fn rest(found: &Linearisation, state: &[&str]) -> String {
     match &found.unsteady[..] {
-        [] => "yes".to_owned(),
+        [] => match found.unsteady_at {
+            Some(t) => format!("no: at t = {t} the rates are not 0"),
+            None => "yes".to_owned(),
+        },
         unsteady => {
             let rates = unsteady.iter();
             let rates: Vec<String> = rates
@@ -110,6 +113,10 @@ fn told(tendency: Tendency, found: &Linearisation) -> String {
             "not decided by the linearisation: {} with real part 0 up to rounding",
             counted(count, "eigenvalue")
         ),
+        Tendency::OfOneTime => {
+            "not decided: the equations depend on time, and eigenvalues at one time do not decide"
+                .to_owned()
+        }
         Tendency::Kinked => {
             let across = found
                 .kinks
