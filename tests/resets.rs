@@ -405,3 +405,47 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     let foot = "conserved under step: dot(x_c) + lf*dot(theta)*cos(theta)";
     assert!(matches!(walker.verdict(foot).verdict, Verdict::Proved(_)));
 }
+
+/// An oscillator that turns back behind a surface with a reset. The gap falls through 0 once per turn, wherever steps end.
+#[test]
+fn a_surface_behind_which_the_motion_turns_is_met_once_per_turn() {
+    macro_rules! oscillator {
+        ($gap:literal) => {
+            Text::new(concat!(
+                "Oscillator { coordinates { x; } parameters { w = 1; } lagrangian = (dot(x)^2 - w^2*x^2)/2; ",
+                "impacts { counter: ",
+                $gap,
+                " => reset { }; } }"
+            ))
+        };
+    }
+    let texts = [
+        oscillator!("x <= 0"),
+        oscillator!("x + x^3 <= 0"),
+        oscillator!("x^3 + 2*x <= 0"),
+        oscillator!("sinh(x) <= 0"),
+        oscillator!("atan(x) <= 0"),
+        oscillator!("x*exp(x) <= 0"),
+        oscillator!("x/sqrt(1 + x^2) <= 0"),
+    ];
+    for (index, text) in texts.iter().enumerate() {
+        for (k, speed) in [2.8, 1.0, 0.3].into_iter().enumerate() {
+            let w = 1.0 + 0.9 * k as f64;
+            let oscillator = text.with([("w", w)]);
+            // `x = -cos(w t) + speed/w sin(w t)` rises through 0 where `w t = atan(w/speed)`, and a turn later.
+            let turn = core::f64::consts::TAU / w;
+            let first = (w / speed).atan() / w;
+            for until in (1..40).map(|part| 0.137 * turn * f64::from(part)) {
+                let right = ((until - first) / turn).floor() + 1.0;
+                let adaptive = Integrator::every().iter().filter(|it| it.is_adaptive());
+                for (&integrator, tol) in adaptive.flat_map(|it| [(it, 1e-6), (it, 1e-10)]) {
+                    let course = Course::new(&oscillator, &[-1.0], &[speed], until);
+                    let run = course.tol(tol).observed(integrator, &mut ());
+                    let case = format!("{index}, {w}, {until}, {}, {tol}", integrator.name());
+                    assert_eq!(run.outcome, Outcome::Done, "{case}");
+                    assert_eq!(run.counters.impacts as f64, right, "{case}");
+                }
+            }
+        }
+    }
+}

@@ -94,6 +94,30 @@ fn rounding_far_away_hides_no_surface() {
     reaches_in_time(&exponentials, 5.0);
 }
 
+/// One step goes far behind the surface: to a height of `-5e17`, from 1.
+#[test]
+fn a_step_that_goes_far_hides_no_surface() {
+    static BALL: Text = Text::new(
+        "Ball {
+            coordinates { y; }
+            lagrangian = dot(y)^2/2 - 1e-6*y;
+            impacts { floor: y >= 0 => stop; }
+        }",
+    );
+    let ball = BALL.model();
+    for &integrator in Integrator::every() {
+        for until in [1e6, 1e9, 1e12] {
+            let course = Course::new(&ball, &[1.0], &[0.0], until);
+            let run = course.step(until).observed(integrator, &mut ());
+            let case = format!("{}, {until:e}", integrator.name());
+            let stopped = matches!(run.outcome, Outcome::StoppedAt { .. });
+            assert!(stopped, "{case}: {:?} at {}", run.outcome, run.t);
+            let right = 2e6_f64.sqrt();
+            assert!((run.t - right).abs() < 1e-12 * right, "{case}: {}", run.t);
+        }
+    }
+}
+
 /// The gap has a kink along the whole motion, where it has no derivative.
 #[test]
 fn a_kink_along_the_motion_hides_no_surface() {

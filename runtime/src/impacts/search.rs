@@ -25,6 +25,11 @@ use crate::state::StateVector;
 /// skipped.
 const FALLS: u32 = 1024;
 
+/// Factor of the part of a step that is searched again if rounding errors of its end hide the gap at its start, and
+/// the least such part.
+const CLOSER: f64 = 1.0 / 256.0;
+const FINEST_PART: f64 = 1e-12;
+
 /// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
@@ -179,7 +184,7 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let ends = [gap, glance.gaps.as_slice()[surface]];
         // The motion behind another hit does not take place, and adds no rounding errors.
-        let sizes = match until < 1.0 {
+        let mut sizes = match until < 1.0 {
             true => self.sizes_until(until),
             false => self.sizes,
         };
@@ -204,6 +209,14 @@ impl<Sys: Impacting> Watch<Sys> {
                 continue;
             }
             let places = match found {
+                Search::Clear if start.until < until => {
+                    return Ok(Found::Unfinished(start.until));
+                }
+                Search::Sinks(part) if part == 0.0 && self.is_far_off(surface, start, step) => {
+                    start.until *= CLOSER;
+                    sizes = self.sizes_until(start.until);
+                    continue;
+                }
                 Search::Clear => {
                     return match tangential {
                         Some(part) if self.is_sunk(surface, step, glance) => {
@@ -240,6 +253,24 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// True if the rounding errors of a step that goes far hide a gap whose sign is certain at the start.
+    fn is_far_off<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> bool {
+        let is_first = start.from == 0.0 && start.above && start.slope.is_none();
+        if !is_first || start.until < FINEST_PART {
+            return false;
+        }
+        let sizes = &self.sizes_at_start;
+        let mut evaluations = 0;
+        let rounding = rounding_along(surface, step, 0.0, sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        self.gaps.as_slice()[surface] > 2.0 * rounding
     }
 
     /// Decides a fall of the gap. Breaks with an impact, or where the motion goes along the surface; goes on behind the

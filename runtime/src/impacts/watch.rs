@@ -625,7 +625,12 @@ impl<Sys: Impacting> Watch<Sys> {
                 before.as_slice()[surface] == 0.0,
             );
             let is_held = self.held.is_held(surface);
-            if is_held || (at_hand && gap < 0.0 && !self.is_pressed(surface, step, glance)) {
+            // Behind a passable surface, the motion may turn back within the step.
+            let mut goes_behind = || match self.is_passable(surface) {
+                true => self.is_sunk(surface, step, glance),
+                false => self.is_pressed(surface, step, glance),
+            };
+            if is_held || (at_hand && gap < 0.0 && !goes_behind()) {
                 self.gaps.as_mut_slice()[surface] = 0.0;
             }
         }
