@@ -279,6 +279,33 @@ fn directions_of_a_section_keep_constraints_and_levels() {
     assert!(along.abs() < 1e-12, "{direction:?}");
 }
 
+/// A ball on a table that a motor moves up and down. After a bounce of the duration `pi`, half a turn of the motor, the
+/// table is where it was. Up and down with the speed `v = 9.81 pi/2`, and `v - c = 0.98 (v + c)` for the speed `c` of the table.
+#[test]
+fn a_constraint_that_is_a_clock_leaves_its_phase_free() {
+    static TABLE: Text = Text::new(
+        "Table {
+            coordinates { x; phase: angle; }
+            lagrangian = (dot(x)^2 + dot(phase)^2)/2 - 9.81*x;
+            constraints { motor: dot(phase) = 2; }
+            impacts { table: x - sin(phase)/10 >= 0 => newton(0.98); }
+        }",
+    );
+    let speed = 9.81 * core::f64::consts::FRAC_PI_2;
+    let right = (0.02 * speed / 1.98 / 0.2).acos();
+    let table = TABLE.model();
+    for phase in [0.67, 0.6, 0.8] {
+        let start = state(&table, &[0.11, phase], &[15.4, 2.0]);
+        let found = orbit(&table, &start, 0, 1).expect("an orbit");
+        assert!((found.point.time - core::f64::consts::PI).abs() < 1e-12);
+        let at = found.point.before.as_ref();
+        assert!((at[1].sin() - right.sin()).abs() < 1e-10, "{at:?}");
+        assert!((at[1].cos() - right.cos()).abs() < 1e-10, "{at:?}");
+        let [re, im] = found.multipliers.iter().next().expect("two");
+        assert!((re.hypot(im) - 0.98).abs() < 1e-9, "{re}, {im}");
+    }
+}
+
 /// Each bounce is lower than the one before. In the limit the ball is at rest on the floor, which is no orbit.
 #[test]
 fn a_motion_that_ceases_is_no_orbit() {

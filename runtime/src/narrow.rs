@@ -46,13 +46,21 @@ const OF_CHANGE: f64 = 1.0;
 /// Allowed further excess, relative to the size of these rates.
 const OF_SIZE: f64 = 0.25;
 
-/// Fraction of a step up to which its rates agree with the assumed rates; 1 if they agree everywhere.
+/// Result of the comparison along a step.
+pub(crate) struct Resolved {
+    /// Fraction of the step up to which its rates agree with the assumed rates; 1 if they agree everywhere.
+    pub part: f64,
+    /// True if the step contains a place where the rates have no bounds.
+    pub has_pole: bool,
+}
+
+/// Compares the rates along a step with the assumed rates.
 ///
 /// # Errors
 /// The [`Outcome`] of a failed dense output.
 pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
-) -> Result<f64, Outcome> {
+) -> Result<Resolved, Outcome> {
     let path = assumed(step)?;
     let mut along = Along {
         system: step.system,
@@ -74,7 +82,7 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
         step.counters.rate_evaluations += 1;
         let is_split = match along.compare(part) {
             Rates::Assumed => false,
-            Rates::Exceeded if depth >= DEPTH => return Ok(part[0]),
+            Rates::Exceeded if depth >= DEPTH => return Ok(along.until(part[0])),
             Rates::Exceeded => true,
             Rates::Unbounded if depth >= DEPTH_OF_POLES => {
                 along.has_pole = true;
@@ -91,13 +99,11 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
             (index, depth) = (index / 2, depth - 1);
         }
         if index == 1 << depth {
-            return Ok(match along.has_gained(step.start(), step.end()) {
-                true => 1.0,
-                false => 0.0,
-            });
+            let has_gained = along.has_gained(step.start(), step.end());
+            return Ok(along.until(f64::from(u8::from(has_gained))));
         }
     }
-    Ok(0.0)
+    Ok(along.until(0.0))
 }
 
 /// The error allowed in each component: that of the tolerance, or the rounding error of a step if that is larger.
@@ -170,6 +176,14 @@ struct Along<'a, Sys: System> {
 }
 
 impl<Sys: System> Along<'_, Sys> {
+    /// Agreement up to this fraction.
+    fn until(&self, part: f64) -> Resolved {
+        Resolved {
+            part,
+            has_pole: self.has_pole,
+        }
+    }
+
     /// True if the change between these states agrees with the integral of the rates, or if the integral has no bounds.
     fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
         let is_within = |i: usize| {

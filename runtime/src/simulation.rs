@@ -11,7 +11,7 @@ use crate::forces::{Along, Driven};
 use crate::independence;
 use crate::integrate::controller::least_step;
 use crate::integrate::{Chosen, Counters, Dop853, Instant, Rebound, Stepper};
-use crate::narrow;
+use crate::narrow::{self, Resolved};
 use crate::outcome::{Outcome, StartError};
 use crate::record::{Observer, Segment};
 use crate::run::Run;
@@ -19,6 +19,12 @@ use crate::state::StateVector;
 
 /// Maximum number of steps in a row that are too short to be examined.
 const MOMENTS: u32 = 1000;
+
+/// Largest count of steps with places where the rates have no bounds. Each such step counts [`POLE`], every other step
+/// lowers the count by 1. A larger count means that the steps cross a jump of the rates back and forth: motion that is turned
+/// back there does not go on.
+const POLES: u32 = 300;
+const POLE: u32 = 3;
 
 /// Default limit of the number of steps of a run.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
@@ -156,6 +162,8 @@ pub(crate) struct Progress<S> {
     flight: f64,
     /// Number of steps in a row that are too short to be examined for such forces.
     moments: u32,
+    /// Count of recent steps with places where the rates have no bounds; see [`POLES`].
+    poles: u32,
     pub(crate) state: S,
     pub(crate) counters: Counters,
 }
@@ -170,6 +178,7 @@ impl<S> Progress<S> {
             rest: 0.0,
             flight: 0.0,
             moments: 0,
+            poles: 0,
             state,
             counters: Counters::default(),
         }
@@ -574,11 +583,18 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             counters: &mut self.progress.counters,
             stepper: &mut *self.stepper,
         };
-        let resolved = narrow::resolved(&mut view)?;
-        if resolved >= 1.0 {
+        let Resolved { part, has_pole } = narrow::resolved(&mut view)?;
+        if part >= 1.0 {
             self.progress.moments = 0;
+            self.progress.poles = match has_pole {
+                true => self.progress.poles + POLE,
+                false => self.progress.poles.saturating_sub(1),
+            };
+            if self.progress.poles > POLES {
+                return Err(Outcome::StepUnderflow { t });
+            }
         }
-        self.shorten_to(resolved)
+        self.shorten_to(part)
     }
 
     /// Repeats the step in the same way if it does not show forces of the effects. True if it is repeated.

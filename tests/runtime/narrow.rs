@@ -324,3 +324,57 @@ fn an_impulse_acts_whichever_stage_of_a_step_meets_it() {
         }
     }
 }
+
+/// A force that points to `x = 0` and jumps there: motion crosses the jump with a velocity. Friction that stops the motion, and
+/// a first-order system that is turned back at the jump: there the motion does not go on.
+#[test]
+fn a_jump_of_the_rates_is_crossed_or_ends_the_run() {
+    static DRAWN: Text = Text::new(
+        "Drawn {
+            coordinates { x; }
+            lagrangian = dot(x)^2/2;
+            forces { pull: -x/abs(x)*d(x); }
+        }",
+    );
+    static RUBBED: Text = Text::new(
+        "Rubbed {
+            coordinates { x; }
+            lagrangian = dot(x)^2/2;
+            forces { friction: -dot(x)/abs(dot(x))*d(x); }
+        }",
+    );
+    static TURNED: Text = Text::new(
+        "Turned {
+            coordinates { x; }
+            field { dot(x) = -x/abs(x); }
+        }",
+    );
+    for &integrator in Integrator::every() {
+        let name = integrator.name();
+        // From x = 1 at rest it reaches 0 after sqrt(2), and comes back after 4 sqrt(2).
+        let drawn = DRAWN.model();
+        let run = Course::new(&drawn, &[1.0], &[0.0], 4.0 * 2.0_f64.sqrt());
+        let run = run.step(1e-3).observed(integrator, &mut ());
+        assert_eq!(run.outcome, Outcome::Done, "{name}");
+        let x = run.state.as_ref()[0];
+        assert!((x - 1.0).abs() < 1e-2, "{name}: {x}");
+        for (text, speed) in [(&RUBBED, [1.0].as_slice()), (&TURNED, &[])] {
+            let model = text.model();
+            let is_for_first_order =
+                integrator != Integrator::Dla2 && integrator != Integrator::Dla4;
+            if speed.is_empty() && !is_for_first_order {
+                continue;
+            }
+            let run = Course::new(&model, &[1.0], speed, 3.0).step(1e-3);
+            let run = run.observed(integrator, &mut ());
+            assert_ne!(run.outcome, Outcome::Done, "{name}");
+            assert!(
+                (run.t - 1.0).abs() < 1e-2,
+                "{name}: {} at {}",
+                run.outcome,
+                run.t
+            );
+            assert!(run.counters.accepted < 5000, "{name}: {:?}", run.counters);
+        }
+    }
+}

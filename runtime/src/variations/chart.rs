@@ -40,10 +40,13 @@ impl<Sys: Variational> Clone for Chart<Sys> {
 
 impl<Sys: Variational> Copy for Chart<Sys> {}
 
-/// Equations of a section: the gap of a surface is 0, and the deviations from the constraints keep their values.
+/// Equations of a section: the gap of a surface is 0, and the deviations from the constraints keep their values. A
+/// deviation that depends on time does not hold the points of a section, which have no time: for `dot(phi) = w` the
+/// motion keeps `phi - w*t`, and an orbit may have any `phi`.
 pub(super) struct Fixed<Sys: Variational> {
     surface: usize,
-    kept: Sys::Deviations<f64>,
+    /// The deviations. Direction 0 is time.
+    kept: Sys::Deviations<Dual>,
 }
 
 impl<Sys: Variational> Fixed<Sys> {
@@ -56,11 +59,9 @@ impl<Sys: Variational> Fixed<Sys> {
     ) -> Result<Self, Undefined> {
         let parameters = dual_parameters(system, &[]);
         let row = dual_state::<Sys>(point, &[]);
-        let found = system.deviations(&parameters, Dual::of(t), &row)?;
-        let mut kept = Sys::Deviations::<f64>::zeros(found.as_slice().len());
-        for (entry, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
-            *entry = found.value;
-        }
+        let mut by_time = [0.0; DIRECTIONS];
+        by_time[0] = 1.0;
+        let kept = system.deviations(&parameters, Dual::new(t, by_time), &row)?;
         Ok(Self { surface, kept })
     }
 
@@ -79,9 +80,10 @@ impl<Sys: Variational> Fixed<Sys> {
         let gaps = system.clearances(&parameters, Dual::of(t), &row)?;
         take(0, gaps.as_slice()[self.surface]);
         let deviations = system.deviations(&parameters, Dual::of(t), &row)?;
-        let kept = deviations.as_slice().iter().zip(self.kept.as_slice());
-        for (k, (entry, kept)) in kept.enumerate() {
-            take(k + 1, *entry - Dual::of(*kept));
+        let both = deviations.as_slice().iter().zip(self.kept.as_slice());
+        let timeless = both.filter(|(_, kept)| kept.slopes()[0] == 0.0);
+        for (k, (entry, kept)) in timeless.enumerate() {
+            take(k + 1, *entry - Dual::of(kept.value));
         }
         Ok(())
     }
