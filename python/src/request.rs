@@ -167,7 +167,7 @@ impl Request<'_> {
             impacts: self.impacts,
             laws: self.laws(model)?,
             policies: self.policies()?,
-            projection: self.projection,
+            projection: policy.projection(self.projection),
         })
     }
 

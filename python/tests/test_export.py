@@ -132,6 +132,22 @@ def test_faults_have_numbers(compiler, tmp_path):
     assert call("thin_rate", 0.0, [2.0, 0, 1, 1], [])[0] == 1
 
 
+def test_a_header_has_no_unused_values(compiler, tmp_path):
+    """The impact takes some of the values that the declared law computes. The compiler refuses unused ones."""
+    text = """
+        Jointed {
+            coordinates { x; th: angle; u in (0.1, 5); p; q; }
+            parameters { m > 0 = 1.5; a = 0.3; k > 0 = 1; l > 0 = 2; }
+            inputs { w; }
+            lagrangian = m/2*(dot(x)^2 + u^2*dot(th)^2 + dot(u)^2) + a*x*dot(th)*sin(th)/10
+                + (1 + x^2/9)*(k*dot(p)^2 + l*dot(q)^2)/2 - (p^4 + q^4)/4;
+            constraints { c: d(p) - u*d(x) = a*sin(t)*d(t); }
+            impacts { low: u - 0.2 >= 0 => restitution(0.3); }
+        }
+    """
+    compiled(compiler, dalembert.Model.from_text(text).to_c(), tmp_path, "jointed")
+
+
 @pytest.mark.parametrize("name", EXPORTED)
 def test_casadi_has_the_functions_of_c(name, compiler, tmp_path):
     casadi = pytest.importorskip("casadi")

@@ -340,6 +340,45 @@ fn off_constraint_policies() {
     assert_eq!(velocities("keep"), [0.5, 0.25]);
 }
 
+/// The residuals of the blade and of the circle stay; the bead moves to larger circles.
+#[test]
+fn residuals_that_are_kept_persist() {
+    /// The residual at positions and velocities.
+    type Residual = fn(&[f64], &[f64]) -> f64;
+    let sleigh = "M {
+        coordinates { x; y; theta: angle; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2 + dot(theta)*(dot(y)*cos(theta) - dot(x)*sin(theta))/4;
+        constraints { blade: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
+    }";
+    let bead = "M {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        constraints { circle: x^2 + y^2 = 1; }
+        initial { x = 1; }
+    }";
+    let slip = |q: &[f64], v: &[f64]| v[1] * q[2].cos() - v[0] * q[2].sin();
+    let rise = |q: &[f64], v: &[f64]| q[0] * v[0] + q[1] * v[1];
+    let cases: [(_, _, Residual); 2] = [
+        (sleigh, "x_dot=1,y_dot=0.4,theta_dot=0.3", slip),
+        (bead, "x_dot=0.1,y_dot=0.5", rise),
+    ];
+    for (text, start, residual) in cases {
+        let line = format!(
+            "simulate - --initial {start} --until 1 --max-step 0.1 --off-constraint keep --json -"
+        );
+        let done = run_on(text, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        let document = done.json();
+        let samples = document["samples"].as_array().unwrap();
+        let [first, last] = [&samples[0], &samples[samples.len() - 1]]
+            .map(|sample| residual(&numbers(&sample["q"]), &numbers(&sample["qdot"])));
+        assert!(
+            first.abs() > 0.09 && (last - first).abs() < 1e-8,
+            "{first}, {last}"
+        );
+    }
+}
+
 #[test]
 fn contradicting_velocities_are_settled_by_the_policy() {
     let start = "simulate bead --initial x_dot=1,y_dot=0 --until 0.1 --samples 1";

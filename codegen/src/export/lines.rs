@@ -121,6 +121,34 @@ impl Lines {
         Operand::Value(value)
     }
 
+    /// Leaves out the values that neither a result nor a demand needs.
+    pub(super) fn drop_unused(&mut self) {
+        let mut is_used = vec![false; self.next];
+        fn mark<'a>(is_used: &mut [bool], operands: impl IntoIterator<Item = &'a Operand>) {
+            for operand in operands {
+                if let Operand::Value(value) = operand {
+                    is_used[*value] = true;
+                }
+            }
+        }
+        mark(&mut is_used, &self.outputs);
+        for line in self.lines.iter().rev() {
+            match line {
+                Line::Demand {
+                    value, reference, ..
+                } => mark(&mut is_used, [value].into_iter().chain(reference)),
+                Line::Let {
+                    value, operands, ..
+                } if is_used[*value] => mark(&mut is_used, operands),
+                Line::Let { .. } => {}
+            }
+        }
+        self.lines.retain(|line| match line {
+            Line::Let { value, .. } => is_used[*value],
+            Line::Demand { .. } => true,
+        });
+    }
+
     /// True if the function reads velocities.
     pub fn reads_velocity(&self) -> bool {
         let is_velocity = |operand: &Operand| matches!(operand, Operand::Velocity(_));

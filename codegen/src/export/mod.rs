@@ -185,6 +185,7 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
         Kernel::Focus(_) => push(&mut lines, form),
         _ => {}
     }
+    lines.drop_unused();
     Some(Routine {
         name,
         about,

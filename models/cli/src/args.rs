@@ -415,7 +415,8 @@ pub struct RunArgs {
     /// --projection.
     #[arg(long, value_parser = choice::form())]
     pub form: Option<Form>,
-    /// Projection to the constraints after each step, in global form. Default: as the scene declares.
+    /// Projection to the constraints after each step, in global form. Default: as the scene declares, but off
+    /// with --off-constraint keep.
     #[arg(long, value_enum)]
     pub projection: Option<Switch>,
 }

@@ -128,7 +128,10 @@ pub fn settings(
         impacts,
         laws: laws(model, &args.law)?,
         policies: args.policies.policies(),
-        projection: args.projection.map(|switch| switch == Switch::On),
+        projection: args
+            .state
+            .off_constraint
+            .projection(args.projection.map(|switch| switch == Switch::On)),
     })
 }
 

@@ -51,6 +51,13 @@ impl OffConstraint {
             Self::Keep => "keep",
         }
     }
+
+    /// Whether a run projects onto the constraints after each step, for the setting that is `wanted`; `None` for the
+    /// default of the scene. [`Self::Keep`] does not project by itself: the residual would be lost after one step.
+    #[must_use]
+    pub fn projection(self, wanted: Option<bool>) -> Option<bool> {
+        wanted.or((self == Self::Keep).then_some(false))
+    }
 }
 
 /// A given state, before its checks.

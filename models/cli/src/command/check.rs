@@ -204,8 +204,12 @@ fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
             ));
         }
         if constraint.level.is_some() {
+            let arguments = match constraint.affine {
+                true => "of position and time",
+                false => "of the position",
+            };
             notes.push(format!(
-                "constraint `{}` is integrable: it keeps a function of the position constant",
+                "constraint `{}` is integrable: it keeps a function {arguments} constant",
                 constraint.name
             ));
         }

@@ -294,6 +294,9 @@ pub(crate) fn study<M: Model>(
     }
     let rounds = if cases.is_empty() { 0 } else { plan.rounds };
     for round in 0..rounds {
+        if round > 0 && begun.elapsed() >= plan.budget {
+            break;
+        }
         tell(&format!("timing, round {} of {}", round + 1, plan.rounds));
         for case in &mut cases {
             if case.times.is_empty() || begun.elapsed() < plan.budget {
@@ -339,7 +342,7 @@ impl<'a> Ladder<'a> {
         tell: &mut dyn FnMut(&str),
     ) -> Result<(), String> {
         let patience = match integrator.is_adaptive() {
-            true => ADAPTIVE * self.plan.patience,
+            true => self.plan.patience.saturating_mul(ADAPTIVE),
             false => self.plan.patience,
         };
         for &tol in &self.plan.tolerances {
