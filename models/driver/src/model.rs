@@ -52,7 +52,7 @@ impl OffConstraint {
         }
     }
 
-    /// Whether a run projects onto the constraints after each step, for the setting that is `wanted`; `None` for the
+    /// The setting of the projection onto the constraints after each step, from the one that is `wanted`; `None` for the
     /// default of the scene. [`Self::Keep`] does not project by itself: the residual would be lost after one step.
     #[must_use]
     pub fn projection(self, wanted: Option<bool>) -> Option<bool> {

@@ -25,7 +25,6 @@ use super::series::{Field, bounds, rated_row, row};
 use crate::contract::{Impacting, Variational};
 use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::outcome::Outcome;
-use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
@@ -329,23 +328,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             centre.before.at(i) + self.frame.along(along)
         });
         let time = centre.time + self.frame.along(|block, k| meeting.delays[block].at(k));
-        let sides = match is_map {
-            true => {
-                let system = self.surfaces.field.system;
-                let mut sides = PerSurface::all(&system.zero_gaps(), Side::Unknown);
-                for (other, side) in sides.iter_mut().enumerate() {
-                    if system.lands_on(surface, other) {
-                        *side = Side::On;
-                    }
-                }
-                sides
-            }
-            false => {
-                let mut sides = *sides_before;
-                sides[surface] = Side::Above;
-                sides
-            }
-        };
+        let sides = self.sides_after(is_map, sides_before);
         let departure = Departure {
             surfaces: self.surfaces,
             surface,
@@ -385,6 +368,22 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             sides_before: *sides_before,
             derivatives,
         })
+    }
+
+    /// The sides of all surfaces just after the law.
+    fn sides_after(&self, is_map: bool, before: &Sides<Sys>) -> Sides<Sys> {
+        let (system, mut sides) = (self.surfaces.field.system, *before);
+        if !is_map {
+            sides[self.surface] = Side::Above;
+            return sides;
+        }
+        for (other, side) in sides.iter_mut().enumerate() {
+            *side = match system.lands_on(self.surface, other) {
+                true => Side::On,
+                false => Side::Unknown,
+            };
+        }
+        sides
     }
 
     /// Derivatives of the state after the impact and of the impact time, along a direction at `t_0`.

@@ -266,10 +266,7 @@ impl<Sys: Impacting> Watch<Sys> {
         if !is_first || start.until < FINEST_PART {
             return false;
         }
-        let sizes = &self.sizes_at_start;
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, 0.0, sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
+        let rounding = counted_rounding(surface, 0.0, step, &self.sizes_at_start);
         self.gaps.as_slice()[surface] > 2.0 * rounding
     }
 
@@ -312,10 +309,7 @@ impl<Sys: Impacting> Watch<Sys> {
         part: f64,
         step: &mut StepView<'_, Sys, Step>,
     ) -> f64 {
-        let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
-        step.counters.event_evaluations += evaluations;
-        rounding
+        counted_rounding(surface, part, step, &self.sizes)
     }
 
     /// The fraction of the step at which the search on a touched surface ends because the rounding error of the gap hides
@@ -594,6 +588,19 @@ pub(super) fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> f64 {
     let (t, state) = (step.time(part), step.state(part));
     resolution(step.system, surface, t, &state, sizes, evaluations)
+}
+
+/// Same as [`rounding_along`]; the step counts the evaluations.
+fn counted_rounding<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    part: f64,
+    step: &mut StepView<'_, Sys, Step>,
+    sizes: &Sys::State,
+) -> f64 {
+    let mut evaluations = 0;
+    let rounding = rounding_along(surface, step, part, sizes, &mut evaluations);
+    step.counters.event_evaluations += evaluations;
+    rounding
 }
 
 pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(

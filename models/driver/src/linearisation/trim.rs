@@ -152,11 +152,16 @@ impl<S: Instance + Variational> Walk<'_, S> {
         larger(largest(columns.iter().flatten()), 1.0) * larger(largest(self.values.iter()), 1.0)
     }
 
+    /// The linear equations of a step: derivatives by column, and residuals.
+    fn linear(&self) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let residuals = self.equations.residuals(&self.sample).into_iter();
+        let columns = self.equations.columns(&self.sample, &self.free);
+        (columns, residuals.map(|it| it.1).collect())
+    }
+
     /// Makes a step that reduces the residuals. Returns false if no step does.
     fn step(&mut self) -> bool {
-        let residuals = self.equations.residuals(&self.sample);
-        let residuals: Vec<f64> = residuals.iter().map(|it| it.1).collect();
-        let columns = self.equations.columns(&self.sample, &self.free);
+        let (columns, residuals) = self.linear();
         let slope = largest(columns.iter().flatten());
         let size = norm(&residuals);
         while self.factor <= DAMPED {
@@ -176,9 +181,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
     fn converge(&mut self) -> Result<u32, Unlinear> {
         let mut before = f64::INFINITY;
         for made in 0..LAST_STEPS {
-            let residuals = self.equations.residuals(&self.sample);
-            let residuals: Vec<f64> = residuals.iter().map(|it| it.1).collect();
-            let columns = self.equations.columns(&self.sample, &self.free);
+            let (columns, residuals) = self.linear();
             let Some(change) = newton(&columns, &residuals) else {
                 return Ok(made);
             };

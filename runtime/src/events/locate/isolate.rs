@@ -99,7 +99,7 @@ impl Stretch {
     }
 }
 
-/// What follows after a stretch.
+/// The next action of the search after a stretch.
 enum Next {
     Halve,
     Advance,
