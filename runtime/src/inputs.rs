@@ -326,6 +326,10 @@ where
         self.system.gaps(t, state)
     }
 
+    fn gap(&self, surface: usize, t: f64, state: &Self::State) -> f64 {
+        self.system.gap(surface, t, state)
+    }
+
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault> {
         self.at(t, state).gap_rates(t, state)
     }

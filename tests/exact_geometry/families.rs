@@ -42,8 +42,12 @@ impl Case {
 }
 
 /// All families.
-pub const FAMILIES: [fn(&mut Random) -> Case; 8] =
-    [disks, post, diamond, moving, turning, waves, twins, leaving];
+pub const FAMILIES: [fn(&mut Random) -> Case; 9] = [
+    disks, pegs, post, diamond, moving, turning, waves, twins, leaving,
+];
+
+/// Number of pegs in a row, and of rows.
+pub const PEGS: [usize; 2] = [4, 2];
 
 /// Models of three disks whose gaps are functions of the distance with the same sign and zero.
 macro_rules! disks {
@@ -65,6 +69,12 @@ static DISKS: [Text; 8] = disks![
     "atan(3*dist[i])",
     "ln((dist[i] + r[i])/r[i])"
 ];
+
+static PEGBOARD: Text = Text::new(
+    "Pegs { coordinates { x; y; } parameters { s > 0 = 1; r > 0 = 0.1; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { peg[i in 1..=8]: sqrt((x - s*(i % 4))^2 + (y - s*(i - i % 4)/4)^2) - r >= 0; } }",
+);
 
 static DIAMOND: Text = Text::new(
     "Diamond { coordinates { x; y; } parameters { a = 0; b = 0; r > 0 = 1; }
@@ -98,6 +108,33 @@ static TWINS: Text = Text::new(
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { first: c - x >= 0; second: c + far - x + slope*y >= 0; } }",
 );
+
+/// A free flight among pegs on a square lattice.
+pub fn pegs(random: &mut Random) -> Case {
+    let s = size(random, 1.0, 1e4);
+    let r = s * size(random, 0.01, 0.45);
+    let [row, rows] = PEGS;
+    let side = row as f64;
+    let speed = size(random, 0.1, 10.0);
+    let flight = Flight {
+        q: [(); 2].map(|()| s * random.between(-1.0, side)),
+        v: direction(random, speed),
+        g: 0.0,
+    };
+    let centres = (1..=row * rows).map(|i| [i % row, i / row]);
+    let centres: Vec<[f64; 2]> = centres.map(|at| at.map(|k| s * k as f64)).collect();
+    Case {
+        model: PEGBOARD.with([("s", s), ("r", r)]),
+        flight,
+        until: 2.0 * side * s / speed,
+        fastest: speed,
+        after: 0.0,
+        distances: Box::new(move |_, [x, y]| {
+            let distances = centres.iter().map(|[a, b]| (x - a).hypot(y - b) - r);
+            distances.collect()
+        }),
+    }
+}
 
 fn disks(random: &mut Random) -> Case {
     let table = size(random, 1.0, 1e4);

@@ -8,6 +8,7 @@
 //! | family | surfaces |
 //! |---|---|
 //! | `disks` | three disks on tables of size 1 to 1e4, with gaps in eight forms |
+//! | `pegs` | eight pegs on a square lattice of size 1 to 1e4 |
 //! | `post` | a narrow post at the end of a flight of up to 1e4 units |
 //! | `diamond` | corners of absolute values |
 //! | `moving` | an oscillating wall, and a disk with constant velocity |
@@ -127,6 +128,29 @@ fn try_starts(count: u64, seed: u64) {
 #[test]
 fn first_impacts_are_those_of_exact_geometry_however_gaps_are_written() {
     try_starts(200, 1);
+}
+
+#[test]
+fn a_long_flight_takes_little_more_than_one_enclosure_of_each_gap() {
+    let mut random = Random::new(3);
+    for integrator in [Integrator::Taylor, Integrator::Dop853] {
+        let [mut enclosures, mut steps] = [0, 0];
+        for _ in 0..100 {
+            let case = families::pegs(&mut random);
+            if case.is_at_hand() {
+                continue;
+            }
+            let start = state(&case.model, &case.flight.q, &case.flight.v);
+            let course = Course::from_state(&case.model, start, case.until);
+            let end = course.run(dalembert_cli::suite::Setting::free(integrator));
+            enclosures += end.counters.enclosures;
+            steps += end.counters.accepted;
+        }
+        let each =
+            enclosures as f64 / (steps as f64 * (families::PEGS[0] * families::PEGS[1]) as f64);
+        println!("{}: {each}", integrator.name());
+        assert!(each < 2.0, "{}: {each}", integrator.name());
+    }
 }
 
 #[test]

@@ -134,7 +134,14 @@ impl Interval {
     #[must_use]
     #[inline(always)]
     pub fn widened(self, radius: f64) -> Self {
-        outwards(self.lo - radius, self.hi + radius, ULP)
+        self.widened_by(radius, radius)
+    }
+
+    /// All numbers that lie at most `down` below the interval and at most `up` above it.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) fn widened_by(self, down: f64, up: f64) -> Self {
+        outwards(self.lo - down, self.hi + up, ULP)
     }
 
     /// An enclosure of pi.
@@ -147,6 +154,13 @@ impl Interval {
     #[inline(always)]
     pub fn increasing(self, function: impl Fn(f64) -> f64) -> Self {
         widest(function(self.lo), function(self.hi), CALL)
+    }
+
+    /// Values of the interval that lie below `least`, raised to it.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) fn at_least(self, least: f64) -> Self {
+        Self::new(self.lo.max(least), self.hi.max(least))
     }
 
     /// The intersection with `[lo, hi]`. It must not be empty.

@@ -32,8 +32,8 @@ pub struct TaylorModel {
     pub error: f64,
     /// Bound of the remainder's change per unit of `s`.
     pub slope: f64,
-    /// True if no value is negative, even where the remainder allows it.
-    pub is_nonnegative: bool,
+    /// All values lie in it, even where the remainder allows others; the whole line if nothing more is known.
+    pub bounds: Interval,
 }
 
 /// `f(c)`, `f'(c)`, `f''(c)/2`, `f'''(c)/6`, and a bound of `|f''''|/24`.
@@ -102,7 +102,7 @@ impl Change {
             powers,
             error: error * (1.0 + CALL) + (CALL * size + f64::MIN_POSITIVE),
             slope: steep * (1.0 + CALL) + (CALL * change + f64::MIN_POSITIVE),
-            is_nonnegative: false,
+            bounds: Interval::WHOLE,
         }
     }
 }
@@ -113,7 +113,7 @@ impl TaylorModel {
         powers: [0.0; 4],
         error: f64::INFINITY,
         slope: f64::INFINITY,
-        is_nonnegative: false,
+        bounds: Interval::WHOLE,
     };
 
     /// A function that equals its cubic.
@@ -122,7 +122,7 @@ impl TaylorModel {
             powers,
             error: 0.0,
             slope: 0.0,
-            is_nonnegative: false,
+            bounds: Interval::WHOLE,
         }
     }
 
@@ -133,18 +133,31 @@ impl TaylorModel {
             powers: [middle, 0.0, 0.0, 0.0],
             error: (value.hi - middle).max(middle - value.lo) * (1.0 + ROUNDING),
             slope: 0.0,
-            is_nonnegative: value.lo >= 0.0,
+            bounds: value,
         }
     }
 
     /// Enclosure of all values on the stretch.
     pub fn range(&self) -> Interval {
         let [middle, first, second, third] = self.powers;
-        let reach = (first.abs() + third.abs() + self.error) * (1.0 + ROUNDING);
-        let turns = Interval::new(middle + second.min(0.0), middle + second.max(0.0));
-        let range = turns.widened(reach);
-        match self.is_nonnegative && !range.is_whole() {
-            true => Interval::new(range.lo.max(0.0), range.hi.max(0.0)),
+        let (slope, bend) = (first.abs(), second.abs());
+        // Largest changes from the middle by the linear and the quadratic term, on the side to which the parabola opens
+        // and on the other one.
+        let far = slope + bend;
+        let near = match slope < 2.0 * bend {
+            true => slope * (slope / (4.0 * bend)),
+            false => slope - bend,
+        };
+        let beyond = third.abs() + self.error;
+        let [far, near] = [far, near].map(|change| (change + beyond) * (1.0 + ROUNDING));
+        let (down, up) = match second < 0.0 {
+            true => (far, near),
+            false => (near, far),
+        };
+        let range = Interval::point(middle).widened_by(down, up);
+        let (lo, hi) = (range.lo.max(self.bounds.lo), range.hi.min(self.bounds.hi));
+        match lo <= hi && !range.is_whole() {
+            true => Interval::new(lo, hi),
             false => range,
         }
     }
@@ -183,6 +196,21 @@ impl TaylorModel {
         first == 0.0 && second == 0.0 && third == 0.0 && self.slope == 0.0
     }
 
+    /// True if the bounds of a varying quantity say more than its cubic and remainder.
+    #[inline(always)]
+    fn is_bounded(&self) -> bool {
+        !self.bounds.is_whole() && !self.is_steady()
+    }
+
+    /// The bounds of a sum or product. The whole line if cubics and remainders of both operands say everything.
+    #[inline(always)]
+    fn bounds_with(&self, other: &Self, both: impl Fn(Interval, Interval) -> Interval) -> Interval {
+        match self.is_bounded() || other.is_bounded() {
+            true => both(self.range(), other.range()),
+            false => Interval::WHOLE,
+        }
+    }
+
     // NOTE: the rounding error of the constant term is the same along the whole stretch and does not contribute to the
     // slope.
     #[inline(always)]
@@ -191,7 +219,7 @@ impl TaylorModel {
             powers: core::array::from_fn(|k| self.powers[k] + other.powers[k]),
             error: self.error + other.error,
             slope: self.slope + other.slope,
-            is_nonnegative: self.is_nonnegative && other.is_nonnegative,
+            bounds: self.bounds_with(&other, |a, b| a + b),
         };
         let spread = sum.spread();
         Self {
@@ -219,7 +247,7 @@ impl TaylorModel {
             error: (self.error * number.abs() + most * doubt) * (1.0 + ROUNDING)
                 + (ROUNDING * most * size + f64::MIN_POSITIVE),
             slope: slope * (1.0 + ROUNDING),
-            is_nonnegative: self.is_nonnegative && factor.is_nonnegative,
+            bounds: self.bounds_with(&factor, |a, b| a * b),
         }
     }
 
@@ -243,9 +271,9 @@ impl TaylorModel {
 
     #[inline(always)]
     fn with_sign_of(self, other: Self) -> Self {
-        Self {
-            is_nonnegative: other.is_nonnegative,
-            ..self
+        match other.bounds.lo >= 0.0 {
+            true => self.nonnegative(),
+            false => self,
         }
     }
 
@@ -281,7 +309,10 @@ impl TaylorModel {
             error: error * (1.0 + ROUNDING)
                 + (ROUNDING * (size * other_size + lift) + f64::MIN_POSITIVE),
             slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * changing + f64::MIN_POSITIVE),
-            is_nonnegative: is_square || (self.is_nonnegative && other.is_nonnegative),
+            bounds: match is_square {
+                true => (self.bounds_with(&other, |a, _| a.square())).at_least(0.0),
+                false => self.bounds_with(&other, |a, b| a * b),
+            },
         }
     }
 
@@ -289,6 +320,13 @@ impl TaylorModel {
     #[inline(always)]
     fn radius(&self) -> f64 {
         (self.spread() + self.error) * (1.0 + ROUNDING)
+    }
+
+    /// Enclosure of all values and of the middle value of the cubic.
+    #[inline(always)]
+    fn reach(&self) -> Interval {
+        let (range, middle) = (self.range(), self.powers[0]);
+        Interval::new(range.lo.min(middle), range.hi.max(middle))
     }
 
     /// The change from the middle, with its powers.
@@ -332,7 +370,7 @@ impl TaylorModel {
                 powers: [centre.powers[0], rate, 0.0, 0.0],
                 error: error + ROUNDING * value.abs(),
                 slope,
-                is_nonnegative: steady.is_nonnegative,
+                bounds: found.value,
             },
             false => steady,
         }
@@ -347,18 +385,19 @@ impl TaylorModel {
     /// A function, evaluated by its series, or over intervals if their error is smaller.
     fn function(
         self,
-        expansion: impl FnOnce(f64, f64) -> Expansion,
+        expansion: impl FnOnce(f64, Interval) -> Expansion,
         rated: fn(Rated) -> Rated,
         interval: fn(Interval) -> Interval,
     ) -> Self {
         if self.is_steady() {
             return Self::steady(interval(self.range()));
         }
-        let change = self.change();
-        let summed = change.summed(expansion(self.powers[0], change.radius));
+        let summed = self
+            .change()
+            .summed(expansion(self.powers[0], self.reach()));
         match summed.is_sharp() {
             true => summed,
-            false => summed.or_closer(self.enclosed(rated, interval)),
+            false => summed.or_enclosed(self.enclosed(rated, interval)),
         }
     }
 
@@ -368,20 +407,23 @@ impl TaylorModel {
         self.error <= 0.5 * self.spread()
     }
 
-    /// The more accurate of two models of the same function.
+    /// The more accurate of two models of the same function, the second of which has bounds.
     #[inline(always)]
-    fn or_closer(self, other: Self) -> Self {
+    fn or_enclosed(self, enclosed: Self) -> Self {
         // NaN fails this comparison.
-        match self.error < other.error {
-            true => self,
-            false => other,
+        match self.error < enclosed.error {
+            true => Self {
+                bounds: enclosed.bounds,
+                ..self
+            },
+            false => enclosed,
         }
     }
 
     #[inline(always)]
     fn nonnegative(self) -> Self {
         Self {
-            is_nonnegative: true,
+            bounds: self.bounds.at_least(0.0),
             ..self
         }
     }
@@ -410,7 +452,7 @@ impl Neg for TaylorModel {
     fn neg(self) -> Self {
         Self {
             powers: self.powers.map(|power| -power),
-            is_nonnegative: false,
+            bounds: -self.bounds,
             ..self
         }
     }
@@ -439,13 +481,12 @@ impl Div for TaylorModel {
             return self.scaled(other.inverted());
         }
         let inverse = other.function(
-            |c, radius| {
+            |c, reach| {
                 let inverse = 1.0 / c;
                 let square = inverse * inverse;
-                let least = (c.abs() - radius) * (1.0 - ROUNDING);
-                let fourth = match least > 0.0 {
-                    true => 1.0 / (least * least * least * least * least),
-                    false => f64::INFINITY,
+                let fourth = match positive(reach.lo.max(-reach.hi)) {
+                    Some(least) => 1.0 / (least * least * least * least * least),
+                    None => f64::INFINITY,
                 };
                 Expansion {
                     terms: [inverse, -square, inverse * square, -square * square],
@@ -459,10 +500,10 @@ impl Div for TaylorModel {
     }
 }
 
-/// Lower bound of the arguments within `radius` of `middle`; `None` if they reach the singularity at 0.
+/// Lower bound of an argument; `None` if it reaches the singularity at 0.
 #[inline(always)]
-fn least(middle: f64, radius: f64) -> Option<f64> {
-    let least = (middle - radius) * (1.0 - ROUNDING);
+fn positive(least: f64) -> Option<f64> {
+    let least = least * (1.0 - ROUNDING);
     (least > 0.0).then_some(least)
 }
 
@@ -496,13 +537,13 @@ impl Numbers for TaylorModel {
 
     fn sqrt(self) -> Self {
         self.function(
-            |c, radius| {
+            |c, reach| {
                 let (root, inverse) = (math::sqrt(c), 1.0 / c);
                 let first = 0.5 * root * inverse;
                 let second = -0.25 * first * inverse;
                 Expansion {
                     terms: [root, first, second, -0.5 * second * inverse],
-                    fourth: match least(c, radius) {
+                    fourth: match positive(reach.lo) {
                         Some(least) => {
                             let square = least * least;
                             (5.0 / 128.0) / (square * least * math::sqrt(least))
@@ -575,7 +616,8 @@ impl Numbers for TaylorModel {
             middle.powf(exponent),
         );
         let c = self.powers[0];
-        let Some(least) = least(c, self.radius()) else {
+        let reach = self.reach();
+        let Some(least) = positive(reach.lo) else {
             return enclosed.nonnegative();
         };
         let inverse = 1.0 / c;
@@ -585,12 +627,12 @@ impl Numbers for TaylorModel {
         let third = (exponent - 2.0) / 3.0 * second * inverse;
         let factor = exponent * (exponent - 1.0) * (exponent - 2.0) * (exponent - 3.0) / 24.0;
         let at = |x: f64| libm::pow(x, exponent - 4.0);
-        let fourth = (1.0 + 1e-9) * factor.abs() * at(least).max(at(c + self.radius()));
+        let fourth = (1.0 + 1e-9) * factor.abs() * at(least).max(at(reach.hi));
         let composed = self.change().summed(Expansion {
             terms: [value, first, second, third],
             fourth,
         });
-        composed.or_closer(enclosed).nonnegative()
+        composed.or_enclosed(enclosed).nonnegative()
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -615,8 +657,8 @@ impl Numbers for TaylorModel {
         // Next to an extremum of the sine, its model is not sharp, but that of the cosine is; and vice versa. If neither
         // model is sharp, the stretch is too long for the series.
         if !sines.is_sharp() && !cosines.is_sharp() {
-            sines = sines.or_closer(self.enclosed(Rated::sin, Interval::sin));
-            cosines = cosines.or_closer(self.enclosed(Rated::cos, Interval::cos));
+            sines = sines.or_enclosed(self.enclosed(Rated::sin, Interval::sin));
+            cosines = cosines.or_enclosed(self.enclosed(Rated::cos, Interval::cos));
         }
         (sines, cosines)
     }
@@ -653,11 +695,11 @@ impl Numbers for TaylorModel {
 
     fn asin(self) -> Self {
         self.function(
-            |c, radius| {
+            |c, reach| {
                 let first = 1.0 / math::sqrt((1.0 - c) * (1.0 + c));
                 let square = first * first;
-                let most = c.abs() + radius;
-                let fourth = match least(1.0, most) {
+                let most = reach.magnitude();
+                let fourth = match positive(1.0 - most) {
                     Some(least) => {
                         let square = least * (1.0 + most);
                         most * (3.0 + 2.0 * most * most)
@@ -706,10 +748,9 @@ impl Numbers for TaylorModel {
 
     fn exp(self) -> Self {
         self.function(
-            |c, radius| {
+            |c, reach| {
                 let power = libm::exp(c);
-                // Rounding changes the sum `c + radius` by less than 1e-12.
-                let most = (1.0 + 1e-9) * libm::exp(c + radius) + f64::MIN_POSITIVE;
+                let most = (1.0 + 1e-9) * libm::exp(reach.hi) + f64::MIN_POSITIVE;
                 Expansion {
                     terms: [power, power, 0.5 * power, power / 6.0],
                     fourth: most / 24.0,
@@ -723,9 +764,9 @@ impl Numbers for TaylorModel {
 
     fn ln(self) -> Self {
         self.function(
-            |c, radius| {
+            |c, reach| {
                 let inverse = 1.0 / c;
-                let fourth = match least(c, radius) {
+                let fourth = match positive(reach.lo) {
                     Some(least) => 0.25 / (least * least * least * least),
                     None => f64::INFINITY,
                 };
@@ -746,10 +787,9 @@ impl Numbers for TaylorModel {
 
     fn log1p(self) -> Self {
         self.function(
-            |c, radius| {
+            |c, reach| {
                 let inverse = 1.0 / (1.0 + c);
-                // A lower bound of `1 + c`, which is a rounded sum.
-                let fourth = match least((1.0 + c) * (1.0 - ROUNDING), radius) {
+                let fourth = match positive(1.0 + reach.lo) {
                     Some(least) => 0.25 / (least * least * least * least),
                     None => f64::INFINITY,
                 };
@@ -871,10 +911,11 @@ mod tests {
             for Sample { from, to } in function.stretches() {
                 for path in paths(from, to) {
                     let found = (function.model)(path);
-                    let remainder = |s: f64| {
+                    let value = |s: f64| {
                         let x = cubic(&path, s).clamp(from.min(to), from.max(to));
-                        (function.plain)(x) - cubic(&found, s)
+                        (function.plain)(x)
                     };
+                    let remainder = |s: f64| value(s) - cubic(&found, s);
                     for k in 0..=16 {
                         let s = f64::from(k) / 8.0 - 1.0;
                         let name = function.name;
@@ -883,11 +924,7 @@ mod tests {
                             here.abs() <= found.error,
                             "{name} from {from} to {to}: {here:e} of {found:?}"
                         );
-                        assert!(
-                            found
-                                .range()
-                                .contains(Interval::point(here + cubic(&found, s)))
-                        );
+                        assert!(found.range().contains(Interval::point(value(s))));
                         let slack = 1e-12 * (1.0 + cubic(&found, s).abs());
                         assert!(
                             k == 0 || (here - before).abs() <= 0.125 * found.slope + slack,
@@ -919,6 +956,37 @@ mod tests {
         let distance = (x.square() + TaylorModel::of(0.0).square()).sqrt();
         let range = distance.range();
         assert!(range.lo >= 0.0 && range.hi < 1.1, "{range:?}");
+    }
+
+    #[test]
+    fn a_long_flight_past_a_disk_is_one_stretch() {
+        // Along x = 0.7 + 9 s, y = 1.3 + 4 s the least distance from the origin is 8.9/sqrt(97).
+        let x = TaylorModel::exact([0.7, 9.0, 0.0, 0.0]);
+        let y = TaylorModel::exact([1.3, 4.0, 0.0, 0.0]);
+        let distance = (x.square() + y.square()).sqrt();
+        let range = distance.range();
+        assert!(range.lo > 0.9036 && range.lo < 0.9037, "{range:?}");
+        assert!(range.hi > 11.05 && range.hi < 11.06, "{range:?}");
+        let gap = (distance - TaylorModel::of(0.9)) * TaylorModel::of(2.0);
+        assert!(gap.range().lo > 0.006 && (-gap).range().hi < -0.006);
+        assert!((gap.square() + x * TaylorModel::of(1e-9)).range().lo > 3e-5);
+    }
+
+    #[test]
+    fn parabolas_have_their_exact_range() {
+        for first in [-3.0, -1.0, 0.0, 0.5, 2.0, 4.0] {
+            for second in [-2.0, -0.5, 0.0, 0.25, 1.0] {
+                let model = TaylorModel::exact([0.3, first, second, 0.0]);
+                let values = (0..=2000).map(|k| cubic(&model, f64::from(k) / 1000.0 - 1.0));
+                let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+                for value in values {
+                    (least, most) = (least.min(value), most.max(value));
+                }
+                let range = model.range();
+                assert!(range.contains(Interval::new(least, most)));
+                assert!(range.width() < most - least + 1e-5, "{model:?} {range:?}");
+            }
+        }
     }
 
     #[test]

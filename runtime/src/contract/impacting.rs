@@ -60,6 +60,12 @@ pub trait Impacting: System {
     /// allowed everywhere.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
+    /// The gap of one surface, with the bits of [`Impacting::gaps`].
+    #[inline(always)]
+    fn gap(&self, surface: usize, t: f64, state: &Self::State) -> f64 {
+        self.gaps(t, state).as_slice()[surface]
+    }
+
     /// The gap of one surface along a part of the motion. `component(i)` returns component `i` of the state along it; a
     /// gap depends on positions only.
     fn gap_along(

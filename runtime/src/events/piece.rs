@@ -4,7 +4,7 @@
 //! rate. The slope of the remainder bounds the change of the remainder along the piece.
 
 use super::crossing::Signs;
-use crate::numbers::TaylorModel;
+use crate::numbers::{Interval, TaylorModel};
 
 /// Bound for the rounding error of a coefficient, relative to the sum of the absolute values of all terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -18,6 +18,8 @@ pub(crate) struct Piece {
     error: f64,
     /// Bound of the change of the remainder between the ends.
     drift: f64,
+    /// Values lie in it, also where the remainder allows others.
+    known: Interval,
 }
 
 impl Piece {
@@ -40,6 +42,11 @@ impl Piece {
             hull: [start, start + rise(u), end - rise(v), end],
             error: model.error + rounding,
             drift: (v - u) * model.slope + 2.0 * rounding,
+            // A model with an unbounded error may stand for a function without values.
+            known: match model.error < f64::INFINITY && !model.bounds.is_whole() {
+                true => model.bounds.widened(rounding),
+                false => Interval::WHOLE,
+            },
         }
     }
 
@@ -48,6 +55,7 @@ impl Piece {
         Self {
             error: 0.0,
             drift: 0.0,
+            known: Interval::WHOLE,
             ..self
         }
     }
@@ -71,7 +79,8 @@ impl Piece {
     fn reach(&self, values: [f64; 4], error: f64) -> [f64; 2] {
         let lowest = values.into_iter().fold(f64::INFINITY, f64::min);
         let highest = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        match (lowest - error, highest + error) {
+        let (lowest, highest) = (lowest - error, highest + error);
+        match (lowest.max(self.known.lo), highest.min(self.known.hi)) {
             // Written so that NaN fails the comparison.
             (lowest, highest) if lowest <= highest => [lowest, highest],
             _ => [f64::NEG_INFINITY, f64::INFINITY],
@@ -93,10 +102,10 @@ impl Piece {
     #[inline]
     pub(crate) fn signs(&self) -> Signs {
         let (hull, error) = (&self.hull, self.error);
-        if hull.iter().all(|&value| value > error) {
+        if self.known.lo > 0.0 || hull.iter().all(|&value| value > error) {
             return Signs::Positive;
         }
-        if hull.iter().all(|&value| value < -error) {
+        if self.known.hi < 0.0 || hull.iter().all(|&value| value < -error) {
             return Signs::Negative;
         }
         let falls = hull[0] > error && hull[3] < -error && self.is_falling();
@@ -168,6 +177,7 @@ impl Piece {
     fn mirrored(self) -> Self {
         Self {
             hull: self.hull.map(|value| -value),
+            known: -self.known,
             ..self
         }
     }

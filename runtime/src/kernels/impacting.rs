@@ -2,7 +2,7 @@
 
 use super::part::{has_modes, number_of};
 use super::passage::passage;
-use super::system::{coefficient, over_numbers};
+use super::system::{coefficient, with_places};
 use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
 use super::{Beside, Condition, Passage, Surface, Tables};
 use crate::contract::{Along, Impacting, System, VectorField, after_reset};
@@ -12,6 +12,9 @@ use crate::law::{Blow, Contact, Jump, Landing, Law};
 use crate::numbers::{Bent, ComplexInterval, Interval, Numbers, Row, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
+
+/// Number of surfaces up to which all gaps are evaluated together where one is asked for.
+const TOGETHER: usize = 4;
 
 /// Bit of a coordinate in a mask. All coordinates from the last bit on share that bit.
 #[inline(always)]
@@ -44,23 +47,23 @@ fn gap_over<S: Declared, L: Numbers>(
     else {
         return L::of(1.0);
     };
-    let mut q = S::Positions::<L>::zeros(part.lengths()[0]);
-    for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
-        if declared.takes & place(i) != 0 {
-            *entry = component(i);
+    with_places(system, part.lengths()[0], |q, parameters| {
+        for (i, entry) in q.iter_mut().enumerate() {
+            if declared.takes & place(i) != 0 {
+                *entry = component(i);
+            }
         }
-    }
-    let arguments: S::Arguments<L> = over_numbers(system);
-    let at = At {
-        parameters: arguments.as_slice(),
-        t,
-        first: q.as_slice(),
-        second: &[],
-    };
-    let mut gap = [L::ZERO];
-    // The kernel of a gap has no guards, so it does not fail.
-    let _ = part.kernels.gap(local, at, &mut gap);
-    gap[0]
+        let at = At {
+            parameters,
+            t,
+            first: q,
+            second: &[],
+        };
+        let mut gap = [L::ZERO];
+        // The kernel of a gap has no guards, so it does not fail.
+        let _ = part.kernels.gap(local, at, &mut gap);
+        gap[0]
+    })
 }
 
 /// True if all conditions of a list hold. Their margins are the first of `margins`; the remaining margins are returned.
@@ -118,21 +121,22 @@ fn signs_along<S: Declared>(
     (local, surface): (usize, &Surface),
     (t, component): Along<'_>,
 ) -> Option<S::Room<TaylorModel>> {
-    let arguments: S::Arguments<TaylorModel> = over_numbers(system);
-    let mut q = S::Positions::<TaylorModel>::zeros(part.lengths()[0]);
-    for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
-        *entry = component(i);
-    }
-    let at = At {
-        parameters: arguments.as_slice(),
-        t,
-        first: q.as_slice(),
-        second: &[],
-    };
     let count = signs(surface);
     let mut values = S::Room::<TaylorModel>::zeros(count);
     let found = &mut values.as_mut_slice()[..count];
-    part.kernels.conditions(local, at, found).ok()?;
+    with_places(system, part.lengths()[0], |q, parameters| {
+        for (i, entry) in q.iter_mut().enumerate() {
+            *entry = component(i);
+        }
+        let at = At {
+            parameters,
+            t,
+            first: q,
+            second: &[],
+        };
+        part.kernels.conditions(local, at, found)
+    })
+    .ok()?;
     Some(values)
 }
 
@@ -337,6 +341,23 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         // The kernel of the gaps has no guards, so it does not fail.
         let _ = part.write(S::Kernels::gaps, t, [state.as_slice(), &[]], entries);
         part.of_surfaces(gaps, 1.0)
+    }
+
+    #[inline]
+    fn gap(&self, surface: usize, t: f64, state: &S::State) -> f64 {
+        let part = Part::of(self, state.as_slice());
+        if part.tables.dimensions.surfaces <= TOGETHER {
+            return self.gaps(t, state).as_slice()[surface];
+        }
+        let mut gap = [1.0];
+        if let Some(local) = part.surface(surface) {
+            // The kernel of a gap has no guards, so it does not fail.
+            let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+                kernels.gap(local, at, values)
+            };
+            let _ = part.write(kernel, t, [state.as_slice(), &[]], &mut gap);
+        }
+        gap[0]
     }
 
     fn gap_along(

@@ -119,6 +119,36 @@ pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<
     numbers
 }
 
+/// Number of positions and parameters up to which they share a short array.
+const FEW: usize = 16;
+
+/// Calls `then` with room for the positions of a gap and with the parameters, both as [`Numbers`].
+///
+/// NOTE: all elements of an array are initialised, and numbers of some kinds are long. The array is therefore short where
+/// the capacities of the rows are much larger than necessary.
+#[inline(always)]
+pub(super) fn with_places<S: Declared, L: Numbers, T>(
+    system: &S,
+    positions: usize,
+    then: impl FnOnce(&mut [L], &[L]) -> T,
+) -> T {
+    let values = system.arguments();
+    let values = values.as_ref();
+    let fits = S::Positions::<L>::CAPACITY + S::Arguments::<L>::CAPACITY <= FEW;
+    if fits || positions + values.len() > FEW {
+        let mut q = S::Positions::<L>::zeros(positions);
+        let arguments: S::Arguments<L> = over_numbers(system);
+        return then(q.as_mut_slice(), arguments.as_slice());
+    }
+    let mut numbers = [L::ZERO; FEW];
+    let (q, rest) = numbers.split_at_mut(positions);
+    let arguments = &mut rest[..values.len()];
+    for (number, value) in arguments.iter_mut().zip(values) {
+        *number = L::of(*value);
+    }
+    then(q, arguments)
+}
+
 /// Implements [`System::state_nearest`] by Newton steps, for constraints that are nonlinear in the velocities.
 ///
 /// # Errors
