@@ -4,6 +4,7 @@
 use dalembert::declaration::Described;
 use dalembert::law::Law;
 use dalembert::{EventLog, Impacting, Instance, Outcome, Run, StateVector, System, VectorField};
+use dalembert_cli::suite::Setting;
 use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::compile;
@@ -446,6 +447,59 @@ fn a_surface_behind_which_the_motion_turns_is_met_once_per_turn() {
                     assert_eq!(run.counters.impacts as f64, right, "{case}");
                 }
             }
+        }
+    }
+}
+
+/// A ball whose speed is halved by a reset, as `newton(1/2)` does.
+static HALVED: Text = Text::new(
+    "Halved {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x;
+        impacts { floor: x >= 0 => reset { dot(x) = -dot(x)/2; }; }
+    }",
+);
+
+#[test]
+fn resets_that_accumulate_end_the_run_there() {
+    let halved = HALVED.model();
+    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
+        for k in 0..60 {
+            let x = 0.2 + 0.05 * f64::from(k);
+            let course = Course::new(&halved, &[x], &[0.0], 30.0);
+            let end = course.run(Setting::free(integrator));
+            let case = format!("{}, {x}: {:?} at {}", integrator.name(), end.outcome, end.t);
+            assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
+            // The first fall takes `sqrt(2 x)`, and each flight half of the one before.
+            assert!(
+                (end.t - 3.0 * (2.0 * x).sqrt()).abs() < 1e-12 * end.t,
+                "{case}"
+            );
+        }
+    }
+}
+
+/// A motion that is set back by distances that shrink by the factor `r`, from `x = 1/2` and then from 1. The resets accumulate
+/// at `1/2 + 1/(1 - r)`.
+static SET_BACK: Text = Text::new(
+    "SetBack {
+        coordinates { x; y; }
+        parameters { r in [0, 1] = 1/2; }
+        field { dot(x) = -1; dot(y) = 0; }
+        impacts { end: x >= 0 => reset { x = y; y = r*y; }; }
+    }",
+);
+
+#[test]
+fn shrinking_ways_to_a_surface_end_the_run() {
+    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
+        for r in [0.1, 0.5, 0.7, 0.9] {
+            let set_back = SET_BACK.with([("r", r)]);
+            let course = Course::from_state(&set_back, state(&set_back, &[0.5, 1.0], &[]), 30.0);
+            let end = course.run(Setting::free(integrator));
+            let case = format!("{}, {r}: {:?} at {}", integrator.name(), end.outcome, end.t);
+            assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
+            assert!((end.t - 0.5 - 1.0 / (1.0 - r)).abs() < 1e-12, "{case}");
         }
     }
 }

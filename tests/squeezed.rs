@@ -382,3 +382,98 @@ fn a_surface_that_is_met_without_a_rate_takes_over() {
         assert!((end.energy - 0.5).abs() < 1e-5, "{name}: {}", end.energy);
     }
 }
+
+/// Walls between which a point rests in the corner, until the corner vanishes: the parabola then touches the other wall.
+static VANISHING: Text = Text::new(
+    "Vanishing {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts {
+            bowl: 3/10*x^2 - 7/10*x + y/5 - 4/5*t + 1/2 >= 0 => restitution(0.6);
+            lid: 2/5*x - 3/10*y - t/5 + 2/5 - x*y/5 >= 0 => newton(0.8);
+        }
+    }",
+);
+
+#[test]
+fn a_corner_that_vanishes_ends_the_run() {
+    let model = VANISHING.model();
+    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
+        let end = held(
+            integrator,
+            &model,
+            [&[0.0; 2], &[-0.8, -0.3]],
+            3.0,
+            [1e-10, 1e-3],
+        );
+        let name = integrator.name();
+        let ends = matches!(
+            end.outcome,
+            Outcome::Squeezed { .. } | Outcome::Contact { .. }
+        );
+        assert!(ends, "{name}: {:?}", end.outcome);
+        assert!((end.t - 1.27035).abs() < 1e-5, "{name}: {}", end.t);
+    }
+}
+
+/// A point between a wall and one that comes closer with the speed 1/2. The speed after the wall at rest tends to
+/// `e/(2 (1 - e))`.
+static CLOSING: Text = Text::new(
+    "Closing {
+        coordinates { x; }
+        parameters { e in [0, 1] = 1/2; }
+        lagrangian = dot(x)^2/2;
+        impacts { left: x >= 0 => newton(e); right: x <= 1 - t/2 => newton(e); }
+    }",
+);
+
+/// Each impact keeps a part of the gap rate, while `dot(x) = (dot(y) - 3/10)/x` grows without limit, as `x` reaches 0 where `y`
+/// reaches the wall.
+static DRIVEN_UP: Text = Text::new(
+    "DrivenUp {
+        coordinates { x; y; }
+        parameters { e in [0, 1] = 9/10; }
+        lagrangian = dot(x)^2 + dot(y)^2;
+        constraints { k: dot(y) = x*dot(x) + 3/10; }
+        impacts { wall: y <= 3/5 => newton(e); }
+        initial { x = 1/5; }
+    }",
+);
+
+#[test]
+fn impacts_that_accumulate_are_spasmodic_if_the_energy_has_no_limit() {
+    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
+        let name = integrator.name();
+        for (e, speeds) in [
+            (0.5, [2.0, 1.0, 0.6, 0.4, 0.1]),
+            (0.95, [20.0, 9.5, 5.0, 1.0, 0.6]),
+        ] {
+            let mut closing = CLOSING.model();
+            set(&mut closing, "e", e);
+            for speed in speeds {
+                let course = Course::new(&closing, &[0.5], &[speed], 5.0);
+                let end = course.run(Setting::free(integrator));
+                let case = format!("{name}, {e}, {speed}: {:?}", end.outcome);
+                assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
+                assert!((end.t - 2.0).abs() < 1e-9, "{case}");
+            }
+        }
+        let mut elastic = CLOSING.model();
+        set(&mut elastic, "e", 1.0);
+        let end = Course::new(&elastic, &[0.5], &[1.0], 5.0).run(Setting::free(integrator));
+        assert!(
+            matches!(end.outcome, Outcome::Spasmodic { .. }),
+            "{name}: {:?}",
+            end.outcome
+        );
+        for (e, speed) in [(0.9, -0.1), (0.9, -0.7), (0.9, -1.3), (1.0, -0.5)] {
+            let driven = DRIVEN_UP.with([("e", e)]);
+            let start = [&[0.2, 0.0][..], &[speed, 0.2 * speed + 0.3]];
+            let course = Course::new(&driven, start[0], start[1], 10.0);
+            let end = course.run(Setting::free(integrator));
+            let case = format!("{name}, {e}, {speed}: {:?} {}", end.outcome, end.energy);
+            assert!(matches!(end.outcome, Outcome::Spasmodic { .. }), "{case}");
+            assert!((end.t - 31.0 / 15.0).abs() < 1e-6, "{case}");
+        }
+    }
+}

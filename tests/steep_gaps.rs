@@ -257,3 +257,34 @@ fn impacts_on_steep_surfaces_are_neither_grazes_nor_hops() {
     static POWER: Text = point!("x^8 + y^8 <= 1");
     bounces(&POWER, [[-0.3, 0.0], [0.9758, 0.2187]], 30.0, 18);
 }
+
+/// A gap that jumps by -2 pi at the cut of `atan2`, which the motion does not reach because it meets a wall.
+#[test]
+fn nothing_happens_before_a_gap_jumps() {
+    static FIRST: Text = Text::new(
+        "First {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            impacts { cut: atan2(y, x) >= -2; wall: y >= 1/2 => stop; }
+        }",
+    );
+    static LAST: Text = Text::new(
+        "Last {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            impacts { wall: y >= 1/2 => stop; cut: atan2(y, x) >= -2; }
+        }",
+    );
+    for (text, wall) in [(&FIRST, 1), (&LAST, 0)] {
+        let model = text.model();
+        for &integrator in Integrator::every() {
+            let course = Course::new(&model, &[-1.0, 1.0], &[0.1, -1.0], 3.0).step(0.01);
+            let run = course.observed(integrator, &mut ());
+            let case = format!("{wall}, {}", integrator.name());
+            let stopped =
+                matches!(run.outcome, Outcome::StoppedAt { surface, .. } if surface == wall);
+            assert!(stopped, "{case}: {:?} at {}", run.outcome, run.t);
+            assert!((run.t - 0.5).abs() < 1e-12, "{case}: {}", run.t);
+        }
+    }
+}

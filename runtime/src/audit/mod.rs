@@ -146,8 +146,8 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         let is_passable = self.is_passable(surface);
         // A projection that moves the end shows by how much the gaps along the step are wrong.
         let t = self.motion.time_at(part);
-        let [arrived, kept] = [&self.motion.state(part), end]
-            .map(|state| self.system.gaps(t, state).as_slice()[surface]);
+        let [arrived, kept] =
+            [&self.motion.state(part), end].map(|state| self.system.gap(surface, t, state));
         let moved = (kept - arrived).abs();
         let slack = &mut self.slack.as_mut_slice()[surface];
         let scan = Scan {

@@ -55,8 +55,8 @@ pub(crate) enum Search {
     /// The gap goes from zero (within rounding) to clearly negative at this fraction; 0 if it never rises from the
     /// surface.
     Sinks(f64),
-    /// The gap changes sign at a pole before this fraction.
-    Pole(f64),
+    /// The gap changes sign at a pole, or jumps, before the first fraction, and nowhere else before the second.
+    Pole(f64, f64),
     /// The search stopped at this fraction.
     Unfinished(f64),
 }
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn pole_and_rest_are_told_from_roots() {
         let (found, _) = first(function!(c | x | c(1.0) / (c(0.3) - x)), FROM_ABOVE);
-        assert!(matches!(found, Search::Pole(_)), "{found:?}");
+        assert!(matches!(found, Search::Pole(..)), "{found:?}");
         // The pole is so close to the boundary of two stretches that those around it are halved to neighbouring
         // numbers.
         assert!(matches!(
@@ -310,7 +310,7 @@ mod tests {
                 FROM_ABOVE
             )
             .0,
-            Search::Pole(_)
+            Search::Pole(..)
         ));
         let resting = Start {
             slope: Some(0.0),

@@ -30,8 +30,8 @@ pub(crate) fn resolution<Sys: Impacting>(
     evaluations: &mut u64,
 ) -> f64 {
     *evaluations += 1;
-    let here = system.gaps(t, state).as_slice()[surface];
-    let later = system.gaps(t + PART * t, state).as_slice()[surface];
+    let here = system.gap(surface, t, state);
+    let later = system.gap(surface, t + PART * t, state);
     let sum = sum_of_terms(system, surface, (t, state), here, sizes, evaluations);
     UNITS * (sum + (later - here).abs() / PART) + evaluation_error(system, surface, t, state)
 }
@@ -73,10 +73,25 @@ fn sum_of_terms<Sys: Impacting>(
     for i in 0..system.state_len() {
         let mut moved = *state;
         moved.as_mut_slice()[i] += PART * sizes.as_slice()[i].abs();
-        sum += (system.gaps(t, &moved).as_slice()[surface] - here).abs();
+        sum += (system.gap(surface, t, &moved) - here).abs();
     }
     *evaluations += 1 + system.state_len() as u64;
     sum / PART
+}
+
+/// Rounding error of a surface's gap rate for these velocities: a multiple of the sum of the absolute values of its terms. The
+/// rate of the surface itself is no larger where both cancel.
+pub(crate) fn rate_resolution<Sys: Impacting>(
+    system: &Sys,
+    surface: usize,
+    (t, state): (f64, &Sys::State),
+    velocities: &[f64],
+    evaluations: &mut u64,
+) -> f64 {
+    let mut changes = state.zeroed();
+    changes.as_mut_slice()[..velocities.len()].copy_from_slice(velocities);
+    let here = system.gap(surface, t, state);
+    UNITS * sum_of_terms(system, surface, (t, state), here, &changes, evaluations)
 }
 
 /// Change of a surface's gap if every component of the state has an error of the size of the tolerance. `sizes` are the
@@ -94,7 +109,7 @@ pub(crate) fn error_within<Sys: Impacting>(
     for (unit, scale) in units.as_mut_slice().iter_mut().zip(scale.as_slice()) {
         *unit = unit.abs() + share * scale;
     }
-    let here = system.gaps(t, state).as_slice()[surface];
+    let here = system.gap(surface, t, state);
     tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)
 }
 

@@ -21,7 +21,7 @@ pub(super) enum Ends {
     Hops(f64),
     /// Impacts on several surfaces follow each other at one time.
     AtOneTime(f64),
-    /// Flights have become too short to be resolved while the energy grew.
+    /// Flights have become too short to be resolved while the energy grew, and grows on.
     Spasmodic(f64),
 }
 
@@ -62,14 +62,14 @@ impl<G: StateVector> Accumulation<G> {
         &mut self,
         bounce: Bounce,
         rounding: impl FnOnce() -> f64,
-        energy: impl FnOnce() -> Option<f64>,
+        energy: impl Fn() -> Option<f64>,
     ) -> Option<Ends> {
         let Bounce { surface, t, .. } = bounce;
         self.coincident.add(bounce);
         let flight = self.hops[surface].land(bounce);
         if let Some(Flight { before, length, .. }) = flight
             && let Some(end) =
-                (self.growth).add(surface, t, (before, length), bounce.rates[1], energy)
+                (self.growth).add(surface, t, (before, length), bounce.rates[1], &energy)
         {
             return Some(Ends::Spasmodic(end));
         }
@@ -77,7 +77,12 @@ impl<G: StateVector> Accumulation<G> {
         match self.coincident.gathering(bounce) {
             Gathering::None => {
                 let is_last = flight.is_some_and(|flight| flight.is_last(rounding));
-                is_last.then(|| Ends::Hops(hops.end(t)))
+                // The gap rates shrink, but the motion gains energy without limit along the surface.
+                let explodes = is_last && self.growth.has_no_limit(surface, &energy);
+                match explodes {
+                    true => Some(Ends::Spasmodic(hops.end(t))),
+                    false => is_last.then(|| Ends::Hops(hops.end(t))),
+                }
             }
             Gathering::Hops(hopping) if hopping == surface => Some(Ends::Hops(hops.end(t))),
             // The surface is hit at the time at which hops on another one end.
@@ -105,6 +110,11 @@ impl<G: StateVector> Accumulation<G> {
     /// where two of them cannot be distinguished.
     pub(super) fn has_passed_on(&self, surface: usize, t: f64) -> bool {
         self.passing.has_accumulated(surface, t)
+    }
+
+    /// True if passages through surfaces followed each other ever faster until one through this surface at the time `t`.
+    pub(super) fn passes_ever_faster(&self, surface: usize, t: f64) -> bool {
+        self.passing.is_ever_faster(surface, t)
     }
 
     /// True if the motion passed through this surface at the time `t` or just before; see [`Passing::has_passed_at`].

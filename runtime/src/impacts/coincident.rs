@@ -45,6 +45,10 @@ impl Tally {
     };
 }
 
+/// Number of impacts on one surface at one time from which on they count as infinitely many if they do not reverse their gap
+/// rates.
+const ENDLESS: u32 = 1 << 14;
+
 /// The impacts at the time of the last one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coincident<G: StateVector> {
@@ -122,6 +126,7 @@ impl<G: StateVector> Coincident<G> {
         let [before, after] = bounce.rates;
         let has_died = after <= DIED * self.on_each[bounce.surface].fastest;
         let has_gained = after > (1.0 + REVERSED) * before.abs();
-        self.unequal >= MANY && (has_died || has_gained)
+        let is_endless = self.on_each[bounce.surface].count >= ENDLESS;
+        self.unequal >= MANY && (has_died || has_gained || is_endless)
     }
 }

@@ -1,7 +1,7 @@
 //! Departure from a touched surface at the start of a step: the motion leaves it, presses into it, or goes along it.
 
 use super::glance::Glance;
-use super::search::FLAT;
+use super::search::{FLAT, gap_at};
 use super::tangency::{crosses_at_rest, is_accelerated, sinks_by_its_second_rate};
 use super::watch::Watch;
 use crate::contract::Impacting;
@@ -147,13 +147,12 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Change {
         // A touched gap differs from 0 at the start by the error of the motion so far.
-        let start = step.system.gaps(step.t_start(), step.start()).as_slice()[surface];
+        let start = step.system.gap(surface, step.t_start(), step.start());
         let mut change = Change::None;
         let mut octave = LEAST_DEPARTURE;
         while change == Change::None && octave < 1.0 {
             for part in [1.5 * octave, 2.0 * octave] {
-                let gaps = step.system.gaps(step.time(part), &step.state(part));
-                let gap = gaps.as_slice()[surface];
+                let gap = gap_at(surface, step, part);
                 step.counters.event_evaluations += 1;
                 let rounding = self.rounding_at(surface, part, step);
                 if gap < start.min(0.0) - 2.0 * rounding {

@@ -2,7 +2,7 @@
 //! enclosures.
 
 use super::root::Polynomial;
-use super::search::rounding_along;
+use super::search::{gap_at, rounding_along};
 use super::series::GapSeries;
 use crate::contract::Impacting;
 use crate::effects::StepView;
@@ -41,9 +41,7 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     let (mut evaluations, mut more, mut enclosures) = (0, 0, 0);
     let mut gap = |part: f64| {
         evaluations += 1;
-        step.system
-            .gaps(step.time(part), &step.state(part))
-            .as_slice()[surface]
+        gap_at(surface, step, part)
     };
     let mut along = |part: [f64; 2]| {
         let certain = series.filter(|series| series.is_certain(surface));

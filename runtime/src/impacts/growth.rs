@@ -33,6 +33,9 @@ const SLOWED: f64 = 1.0 / 32.0;
 /// Least relative growth of the energy.
 const GROWN: f64 = 1.0 / (1 << 20) as f64;
 
+/// Growth of the energy over the later half of the flights from which on it has no limit, also where gap rates shrink.
+const MANIFOLD: f64 = 16.0;
+
 /// Per surface, flights that shrink in a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Growth<G: StateVector>(PerSurface<Series, G>);
@@ -42,10 +45,10 @@ pub(super) struct Growth<G: StateVector>(PerSurface<Series, G>);
 struct Series {
     /// Number of the last flight.
     count: u64,
-    /// The flight of number [`FIRST`], with the gap rate and, if there is one, the energy after it.
-    first: Option<(Flight, f64, Option<f64>)>,
-    /// The last two flights whose numbers are powers of two, the later one first.
-    marks: [Option<Flight>; 2],
+    /// The flight of number [`FIRST`], and the gap rate after it.
+    first: Option<(Flight, f64)>,
+    /// The last three flights whose numbers are powers of two, the latest first.
+    marks: [Option<Flight>; 3],
 }
 
 /// A flight of a series.
@@ -53,6 +56,8 @@ struct Series {
 struct Flight {
     number: u64,
     length: f64,
+    /// The energy after it, if there is one. Known for the first flight and the marks.
+    energy: Option<f64>,
 }
 
 impl<G: StateVector> Growth<G> {
@@ -75,9 +80,19 @@ impl<G: StateVector> Growth<G> {
         t: f64,
         (before, length): (Option<f64>, f64),
         rate: f64,
-        energy: impl FnOnce() -> Option<f64>,
+        energy: impl Fn() -> Option<f64>,
     ) -> Option<f64> {
         self.0[surface].add(t, (before, length), rate, energy)
+    }
+
+    /// True if the energy has grown many times over the later half of the flights on this surface.
+    pub(super) fn has_no_limit(&self, surface: usize, energy: impl Fn() -> Option<f64>) -> bool {
+        let series = &self.0[surface];
+        let are_enough = series.count > 2 * FIRST;
+        are_enough
+            && series
+                .earlier()
+                .is_some_and(|earlier| multiplies(earlier.energy, energy()))
     }
 }
 
@@ -86,7 +101,7 @@ impl Series {
     const NONE: Self = Self {
         count: 0,
         first: None,
-        marks: [None; 2],
+        marks: [None; 3],
     };
 
     /// Series in which the time before the first impact counts as a flight longer than all others.
@@ -101,7 +116,7 @@ impl Series {
         t: f64,
         (before, length): (Option<f64>, f64),
         rate: f64,
-        energy: impl FnOnce() -> Option<f64>,
+        energy: impl Fn() -> Option<f64>,
     ) -> Option<f64> {
         // Times are rounded, so that flights may seem to grow.
         let shrinks = before.is_none_or(|before| length <= before + ROUNDED * t.abs());
@@ -109,31 +124,62 @@ impl Series {
             *self = Self::NONE;
             return None;
         }
-        let last = self.count(length);
+        let last = self.count(length, &energy);
         if last.number == FIRST {
-            self.first = Some((last, rate, energy()));
+            let energy = energy();
+            self.first = Some((Flight { energy, ..last }, rate));
             return None;
         }
-        let ((first, first_rate, first_energy), before) = self.first.zip(before)?;
+        let ((first, first_rate), before) = self.first.zip(before)?;
         let resolved = RESOLVED[usize::from(length < QUICK * before)] * t.abs();
         if length <= resolved && length < SHRUNK * first.length && rate > SLOWED * first_rate {
-            let has_grown = has_grown(first_energy, energy());
-            return has_grown.then(|| t + self.rest(first, before, last));
+            let energy = energy();
+            let grows_on = self.grows_on(Flight { energy, ..last });
+            return grows_on.then(|| t + self.rest(first, before, last));
         }
         None
     }
 
     /// Counts a flight that shrank.
-    fn count(&mut self, length: f64) -> Flight {
+    fn count(&mut self, length: f64, energy: impl Fn() -> Option<f64>) -> Flight {
         self.count += 1;
-        let last = Flight {
+        let mut last = Flight {
             number: self.count,
             length,
+            energy: None,
         };
         if last.number.is_power_of_two() {
-            self.marks = [Some(last), self.marks[0]];
+            last.energy = energy();
+            self.marks = [Some(last), self.marks[0], self.marks[1]];
         }
         last
+    }
+
+    /// A flight of the earlier half, with its energy.
+    fn earlier(&self) -> Option<Flight> {
+        let first = self.first.map(|(first, _)| first);
+        self.marks[1].filter(|mark| mark.number > FIRST).or(first)
+    }
+
+    /// True if the energy has grown, lately at least as much per flight as before. Otherwise it tends to a limit.
+    fn grows_on(&self, last: Flight) -> bool {
+        let first = self.first.map(|(first, _)| first);
+        let marks = self.marks.iter().flatten();
+        let mut earlier = marks
+            .filter(|mark| mark.number > FIRST && mark.number < last.number)
+            .copied()
+            .chain(first);
+        let Some(middle) = earlier.next() else {
+            return false;
+        };
+        let first = earlier.next().unwrap_or(middle);
+        let slopes = [(first, middle), (middle, last)].map(|(from, to)| to.energy_since(from));
+        has_grown(first.energy, last.energy)
+            && match slopes {
+                [Some(before), Some(lately)] => lately >= before,
+                [None, Some(lately)] => lately > 0.0,
+                _ => false,
+            }
     }
 
     /// Total time of all further flights.
@@ -157,6 +203,12 @@ impl Flight {
     fn flights_since(self, earlier: Self) -> f64 {
         (self.number - earlier.number) as f64
     }
+
+    /// Growth of the energy per flight since an earlier one; `None` for the same flight or without energies.
+    fn energy_since(self, earlier: Self) -> Option<f64> {
+        let (before, after) = earlier.energy.zip(self.energy)?;
+        (self.number > earlier.number).then(|| (after - before) / self.flights_since(earlier))
+    }
 }
 
 /// True if the energy has grown; false if it is unknown.
@@ -164,6 +216,13 @@ fn has_grown(first: Option<f64>, last: Option<f64>) -> bool {
     first
         .zip(last)
         .is_some_and(|(first, last)| last - first > GROWN * last.abs().max(first.abs()))
+}
+
+/// True if the magnitude of the energy has grown many times; false if it is unknown.
+fn multiplies(first: Option<f64>, last: Option<f64>) -> bool {
+    first
+        .zip(last)
+        .is_some_and(|(first, last)| last > MANIFOLD * first.abs())
 }
 
 fn inverse_root(x: f64) -> f64 {
@@ -191,7 +250,8 @@ mod tests {
         for n in 1..20_000_000 {
             let flight = length(n);
             t += flight;
-            let found = growth.add(0, t, (before, flight), 1.0, || Some(f64::from(n)));
+            let energy = || Some(f64::from(n) * f64::from(n));
+            let found = growth.add(0, t, (before, flight), 1.0, energy);
             if found.is_some() {
                 return found;
             }
@@ -211,6 +271,21 @@ mod tests {
     fn limits_of_algebraic_flights_are_found() {
         let algebraic = end(|n| 1.0 / (f64::from(n) * f64::from(n + 1))).expect("an end");
         assert!((algebraic - 1.0).abs() < 1e-9, "{algebraic}");
+    }
+
+    #[test]
+    fn an_energy_with_a_limit_does_not_grow_on() {
+        for kept in [0.3, 0.9, 0.99] {
+            let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
+            let (mut t, mut before) = (0.0, None);
+            for n in 1..400 {
+                let flight = 0.9_f64.powi(n);
+                t += flight;
+                let energy = || Some(2.0 - f64::powi(kept, n));
+                assert_eq!(growth.add(0, t, (before, flight), 1.0, energy), None);
+                before = Some(flight);
+            }
+        }
     }
 
     #[test]

@@ -44,6 +44,10 @@ impl<G: StateVector> Passing<G> {
                 Some(stretch) if is_shorter(stretch, self.stretch) => {
                     self.shortened.saturating_add(1)
                 }
+                // Both are equal up to the rounding of times.
+                Some(stretch) if is_shorter(stretch - INSTANT * t.abs(), self.stretch) => {
+                    self.shortened
+                }
                 _ => 0,
             };
         }
@@ -54,6 +58,11 @@ impl<G: StateVector> Passing<G> {
     /// rounding errors of the time would return to it again and again.
     pub(super) fn has_passed_at(&self, surface: usize, t: f64) -> bool {
         self.on_each[surface].is_some_and(|last| t - last <= AT_ONCE * INSTANT * t.abs())
+    }
+
+    /// True if impacts followed each other faster and faster until one on this surface at the time `t`.
+    pub(super) fn is_ever_faster(&self, surface: usize, t: f64) -> bool {
+        self.shortened > SHRUNK && self.on_each[surface] == Some(t)
     }
 
     /// True if impacts followed each other faster and faster until `t`, where two of them cannot be distinguished, and

@@ -11,6 +11,7 @@ use super::hits::Hits;
 use crate::contract::Impacting;
 use crate::effects::Moment;
 use crate::error::Fault;
+use crate::events::resolution::rate_resolution;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -32,6 +33,33 @@ pub(super) fn quieten_held<Sys: Impacting>(
         if hits.is_approached(surface, rates) && !hits.has_fallen(surface) {
             let rate = rates.as_slice()[surface];
             quieten(hits, surface, [rate, rate], SAME * size, now)?;
+        }
+    }
+    Ok(())
+}
+
+/// Raises the thresholds of surfaces whose gap rates at the start of a run are rounding errors, such as those between
+/// bodies of equal velocity, which is computed from their momenta.
+pub(super) fn quieten_at_start<Sys: Impacting>(
+    hits: &mut Hits<Sys::Gaps>,
+    rates: &Sys::Gaps,
+    now: &mut Moment<'_, Sys>,
+) -> Result<(), Outcome> {
+    for surface in 0..hits.count() {
+        if !hits.is_approached(surface, rates) {
+            continue;
+        }
+        let velocity = now.system.velocity(now.t, now.state)?;
+        let rate = rates.as_slice()[surface];
+        let rounding = rate_resolution(
+            now.system,
+            surface,
+            (now.t, now.state),
+            velocity.as_slice(),
+            &mut now.counters.event_evaluations,
+        );
+        if rate.abs() <= rounding {
+            hits.set_still(surface, -rate);
         }
     }
     Ok(())

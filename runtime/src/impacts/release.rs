@@ -104,7 +104,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(match found {
         Search::Clear => None,
         Search::Falls(bracket) => Some((bracket.after, Some(surface))),
-        Search::Sinks(part) | Search::Pole(part) => Some((part, Some(surface))),
+        Search::Sinks(part) | Search::Pole(_, part) => Some((part, Some(surface))),
         Search::Unfinished(part) => Some((part, None)),
     })
 }

@@ -7,6 +7,7 @@ use super::departure::Departure;
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
 use super::place::Place;
+use super::sides::Behind;
 use super::tangency::crosses_at_rest;
 use super::told::Told;
 use super::watch::{Graze, Watch};
@@ -29,6 +30,9 @@ const FALLS: u32 = 1024;
 /// the least such part.
 const CLOSER: f64 = 1.0 / 256.0;
 const FINEST_PART: f64 = 1e-12;
+
+/// Number of halvings of the distance to a pole behind which the sign of a gap is looked for.
+const CLOSEST: u32 = 40;
 
 /// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
@@ -57,6 +61,8 @@ enum Found {
     /// A hit at this fraction of the step, with this gap rate.
     Hit(f64, f64),
     Unfinished(f64),
+    /// The motion comes to the forbidden side at this fraction of the step, without an impact.
+    Behind(f64),
 }
 
 /// A fall of a gap that is no impact.
@@ -83,6 +89,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.length = glance.length;
         self.parts.fill(None);
         self.is_shown_by_values.fill(false);
+        let mut behind = None;
         for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
@@ -101,6 +108,10 @@ impl<Sys: Impacting> Watch<Sys> {
                     return Err(Outcome::StepUnderflow { t: step.t_start() });
                 }
                 Found::Unfinished(part) => (part, None),
+                Found::Behind(part) => {
+                    behind = Some((surface, part));
+                    (part, None)
+                }
                 Found::Nothing if self.is_due(surface, glance) && is_active(surface, step, 1.0) => {
                     let rate = match last_rate.is_nan() {
                         true => rate_before(surface, step, 1.0)?,
@@ -118,6 +129,11 @@ impl<Sys: Impacting> Watch<Sys> {
                 self.note_graze(surface, part, [rate, last_rate], step)?;
             }
             self.proposed = Some(self.proposed.map_or(part, |earliest| earliest.min(part)));
+        }
+        if let Some((surface, part)) = behind
+            && self.proposed == Some(part)
+        {
+            self.cut_behind((surface, Behind::Pole), part, step);
         }
         Ok(())
     }
@@ -144,8 +160,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let system = step.system;
         let gap = |t: f64, state: &Sys::State| {
             let rates = system.gap_rates(t, state)?;
-            let gaps = system.gaps(t, state);
-            Ok((gaps.as_slice()[surface], rates.as_slice()[surface]))
+            Ok((system.gap(surface, t, state), rates.as_slice()[surface]))
         };
         if !step.stepper.meet(system, theta, &gap, step.counters) {
             return theta;
@@ -199,7 +214,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 whole,
             };
             let found = first_fall(surface, step, &mut self.path, &sizes, known, start);
-            let is_open = !(leaves_at_once && matches!(found, Search::Pole(_)));
+            let is_open = !(leaves_at_once && matches!(found, Search::Pole(..)));
             if is_open && let Some(part) = self.hidden(surface, found, start, step) {
                 match self.depart(surface, start, step, glance)? {
                     ControlFlow::Continue(next) => start = next,
@@ -226,9 +241,11 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
-                Search::Pole(_) if leaves_at_once => return Ok(Found::Nothing),
-                Search::Pole(after) => {
-                    self.check_behind_pole(surface, after, step)?;
+                Search::Pole(..) if leaves_at_once => return Ok(Found::Nothing),
+                Search::Pole(place, after) => {
+                    if self.leads_behind(surface, [place, after], step) {
+                        return Ok(Found::Behind(place));
+                    }
                     start = Start::behind(after, until);
                     continue;
                 }
@@ -324,9 +341,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let is_touched = start.slope.is_some() && start.above && is_active(surface, step, 0.0);
         match found {
             Search::Unfinished(part) if is_touched => Some(part),
-            Search::Pole(part) if is_touched => {
-                let (t, state) = (step.time(part), step.state(part));
-                let gap = step.system.gaps(t, &state).as_slice()[surface];
+            Search::Pole(_, part) if is_touched => {
+                let gap = gap_at(surface, step, part);
                 step.counters.event_evaluations += 1;
                 let rounding = self.rounding_at(surface, part, step);
                 (gap.abs() <= 2.0 * rounding).then_some(part)
@@ -369,6 +385,9 @@ impl<Sys: Impacting> Watch<Sys> {
         let Some(slope) = start.slope else {
             return false;
         };
+        if slope.is_nan() && is_approached_behind_start(surface, step) {
+            return false;
+        }
         if part == 0.0 {
             return true;
         }
@@ -443,10 +462,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Bracket { before, after, .. }: Bracket,
     ) -> Result<Option<f64>, Outcome> {
         let ends = [(before - ASIDE).max(0.0), (after + ASIDE).min(1.0)];
-        let gap = |part: f64| {
-            let gaps = step.system.gaps(step.time(part), &step.state(part));
-            gaps.as_slice()[surface]
-        };
+        let gap = |part: f64| gap_at(surface, step, part);
         let [first, last] = ends.map(gap);
         step.counters.event_evaluations += 2;
         let slope = (last - first) / ((ends[1] - ends[0]) * step.length());
@@ -460,23 +476,31 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(falls.then_some(slope))
     }
 
-    /// Refuses a wall that counts behind a pole of its gap while the gap is negative there: the motion came to the
-    /// forbidden side without an impact.
-    fn check_behind_pole<Step: Stepper<Sys>>(
+    /// True if a wall counts behind a pole of its gap while the gap is negative there: the motion comes to the forbidden
+    /// side without an impact. The gap is evaluated ever closer to the pole, where it is large, as are its rounding errors.
+    fn leads_behind<Step: Stepper<Sys>>(
         &self,
         surface: usize,
-        part: f64,
+        [pole, after]: [f64; 2],
         step: &mut StepView<'_, Sys, Step>,
-    ) -> Result<(), Outcome> {
-        let gaps = step.system.gaps(step.time(part), &step.state(part));
-        let gap = gaps.as_slice()[surface];
-        step.counters.event_evaluations += 1;
-        let rounding = self.rounding_at(surface, part, step);
-        let counts = !self.is_passable(surface) && is_active(surface, step, part);
-        if gap < -2.0 * rounding && counts {
-            return Err(Outcome::StartsInside { surface, gap });
+    ) -> bool {
+        if self.is_passable(surface) {
+            return false;
         }
-        Ok(())
+        let mut way = after - pole;
+        for _ in 0..CLOSEST {
+            let part = pole + way;
+            let gap = gap_at(surface, step, part);
+            step.counters.event_evaluations += 1;
+            if gap < 0.0
+                && gap < -2.0 * self.rounding_at(surface, part, step)
+                && is_active(surface, step, part)
+            {
+                return true;
+            }
+            way *= 0.5;
+        }
+        false
     }
 
     /// The largest magnitudes of the components up to this fraction of the step: the motion behind a hit does not take
@@ -624,7 +648,18 @@ fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
     exists.then_some(place)
 }
 
-/// The gap rate shortly before a fraction of a step where it has none; NaN if it has none there either.
+/// True if the gap rate is negative behind the start of a step and does not vanish there. At a kink the gap has no rate at the
+/// start.
+fn is_approached_behind_start<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+) -> bool {
+    let rates = [NEAREST, ASIDE].map(|part| rate_at(surface, step, part));
+    matches!(rates, [Ok(near), Ok(far)] if near < 0.0 && near.abs() > 0.5 * far.abs())
+}
+
+/// The gap rate shortly before a fraction of a step where it has none, or behind the start of the step; NaN if it has none
+/// there either.
 fn rate_before<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -632,7 +667,8 @@ fn rate_before<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<f64, Outcome> {
     let (mut way, mut rate) = (NEAREST, f64::NAN);
     while rate.is_nan() && way < ASIDE {
-        rate = rate_at(surface, step, (part - way).max(0.0))?;
+        let there = if part > way { part - way } else { part + way };
+        rate = rate_at(surface, step, there)?;
         way *= 8.0;
     }
     Ok(rate)
@@ -646,4 +682,14 @@ fn rate_at<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<f64, Outcome> {
     let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
     Ok(rates.as_slice()[surface])
+}
+
+/// The gap of a surface at a fraction of a step.
+pub(super) fn gap_at<Sys: Impacting, Step: Stepper<Sys>>(
+    surface: usize,
+    step: &StepView<'_, Sys, Step>,
+    part: f64,
+) -> f64 {
+    let (t, state) = (step.time(part), step.state(part));
+    step.system.gap(surface, t, &state)
 }

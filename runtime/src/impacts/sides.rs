@@ -8,7 +8,7 @@
 use core::cell::RefCell;
 
 use super::glance::{Glance, SAME_TIME};
-use super::search::is_active;
+use super::search::{gap_at, is_active};
 use super::watch::{Watch, rounding};
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -18,6 +18,15 @@ use crate::integrate::Stepper;
 use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
+
+/// How the motion came behind a surface without an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Behind {
+    /// The surface began to count.
+    Begins,
+    /// The gap changed its sign at a pole, or jumped.
+    Pole,
+}
 
 /// Bound for the relative rounding error of a component or of the time.
 pub(super) const UNITS: f64 = 32.0 * f64::EPSILON;
@@ -36,7 +45,7 @@ impl<Sys: Impacting> Watch<Sys> {
             {
                 match gap_at(surface, step, found.after) >= -rounding {
                     true => self.cut_at(surface, found.after, step.length()),
-                    false => self.cut_behind(surface, found, step),
+                    false => self.cut_behind((surface, Behind::Begins), found.after, step),
                 }
             }
         }
@@ -56,7 +65,7 @@ impl<Sys: Impacting> Watch<Sys> {
             step.counters.event_evaluations += 1;
             gap_at(surface, step, part) < 0.0 && is_active(surface, step, part)
         });
-        self.cut_behind(surface, found, step);
+        self.cut_behind((surface, Behind::Begins), found.after, step);
         Ok(())
     }
 
@@ -69,15 +78,16 @@ impl<Sys: Impacting> Watch<Sys> {
         (self.proposed, self.behind) = (Some(part), None);
     }
 
-    fn cut_behind<Step: Stepper<Sys>>(
+    /// Proposes to end the run at this fraction of the step, where the motion is behind a surface.
+    pub(super) fn cut_behind<Step: Stepper<Sys>>(
         &mut self,
-        surface: usize,
-        found: Onset,
+        (surface, behind): (usize, Behind),
+        part: f64,
         step: &StepView<'_, Sys, Step>,
     ) {
         self.length = step.length();
         self.parts.fill(None);
-        (self.proposed, self.behind) = (Some(found.after), Some(surface));
+        (self.proposed, self.behind) = (Some(part), Some((surface, behind)));
     }
 
     /// The first fraction of the step up to `reach` at which the gap is negative and the surface counts, both beyond
@@ -259,13 +269,15 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Ends the run if the step was cut at this fraction because a surface became active while the motion was behind
-    /// it.
+    /// Ends the run if the step was cut at this fraction because the motion is behind a surface there.
     pub(super) fn check_behind(&self, part: f64, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
         match self.behind {
-            Some(surface) if self.proposed == Some(part) => {
-                let gap = now.system.gaps(now.t, now.state).as_slice()[surface];
-                Err(Outcome::BeginsBehind { surface, gap })
+            Some((surface, behind)) if self.proposed == Some(part) => {
+                let gap = now.system.gap(surface, now.t, now.state);
+                Err(match behind {
+                    Behind::Begins => Outcome::BeginsBehind { surface, gap },
+                    Behind::Pole => Outcome::StartsInside { surface, gap },
+                })
             }
             _ => Ok(()),
         }
@@ -296,14 +308,4 @@ pub(super) fn shortly_before(after: f64, holds: impl Fn(f64) -> bool) -> Onset {
         back *= 4.0;
     }
     narrowed([(after - back).max(0.0), after], holds)
-}
-
-/// The gap at a fraction of a step.
-fn gap_at<Sys: Impacting, Step: Stepper<Sys>>(
-    surface: usize,
-    step: &StepView<'_, Sys, Step>,
-    part: f64,
-) -> f64 {
-    let gaps = step.system.gaps(step.time(part), &step.state(part));
-    gaps.as_slice()[surface]
 }

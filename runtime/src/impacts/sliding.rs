@@ -153,7 +153,7 @@ impl Slide {
         t: f64,
         state: &mut Sys::State,
     ) -> Result<(), Fault> {
-        let gap = system.gaps(t, state).as_slice()[self.back];
+        let gap = system.gap(self.back, t, state);
         let Sides { here, other, rates } = self.sides(system, t, state)?;
         let step = gap / (rates[0] + rates[1]);
         if !step.is_finite() {
@@ -233,8 +233,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let is_behind = |part: f64, floor: f64, step: &StepView<'_, Sys, Step>| {
             let (t, state) = (step.time(part), step.state(part));
             slide.across(system, t, &state).is_ok_and(|other| {
-                system.gaps(t, &other).as_slice()[surface] < -floor
-                    && system.surface_active(surface, t, &other)
+                system.gap(surface, t, &other) < -floor && system.surface_active(surface, t, &other)
             })
         };
         if is_behind(0.0, floor, step) {

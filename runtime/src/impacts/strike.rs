@@ -135,6 +135,11 @@ impl<Sys: Impacting> Impacts<Sys> {
                 }
                 if enters || now.system.position(now.state) != now.system.position(&arrived) {
                     self.land(&arrived, (&mut hits, &rates), now, observer)?;
+                    // The way back to the surface takes no time that can be resolved.
+                    let returns = hits.is_at_hand(surface) && rates.as_slice()[surface] < 0.0;
+                    if !enters && returns && self.accumulation.passes_ever_faster(surface, now.t) {
+                        return Err(Outcome::Zeno { t: now.t, surface });
+                    }
                 }
                 if enters {
                     self.watch.pass_by(&mut hits);

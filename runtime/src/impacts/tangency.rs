@@ -1,6 +1,7 @@
 //! Gaps that are zero at gap rate zero: tests whether the motion presses into the surface or crosses it.
 
 use super::held::second_rates;
+use super::search::gap_at;
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::error::Fault;
@@ -47,8 +48,7 @@ pub(super) fn sinks_by_its_second_rate<Sys: Impacting, Step: Stepper<Sys>>(
 ) -> Result<bool, Outcome> {
     let second = second_rate_at(surface, step, part)?;
     let elapsed = part * step.length();
-    let gap = step.system.gaps(step.time(part), &step.state(part));
-    Ok(second * elapsed * elapsed < gap.as_slice()[surface])
+    Ok(second * elapsed * elapsed < gap_at(surface, step, part))
 }
 
 /// The second rate of a gap at a fraction of the step; NaN for a system that does not provide it.

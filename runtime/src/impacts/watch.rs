@@ -13,7 +13,9 @@ use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
 use super::place::Place;
+use super::quiet::quieten_at_start;
 use super::series::LastSeries;
+use super::sides::Behind;
 use super::told::Told;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -72,14 +74,16 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) sizes: Sys::State,
     /// The sizes at the start of the last step. A cut uses them, because the motion behind it does not contribute.
     pub(super) sizes_at_start: Sys::State,
+    /// The least sizes after impacts: 0, or those of the motion of which the start of the run is the end.
+    least_sizes: Sys::State,
     /// Number of steps since the last impact. Each has rounded the state.
     pub(super) steps: u32,
     /// Sum of the local errors of these steps, in units of the tolerance.
     pub(super) errors: f64,
     /// Surfaces that hold the motion. Their gaps are 0 and are not tested.
     pub(super) held: Held<Sys::Gaps>,
-    /// The surface that begins to count while the motion is behind it, where the last step is to be cut.
-    pub(super) behind: Option<usize>,
+    /// The surface behind which the motion is where the last step is to be cut.
+    pub(super) behind: Option<(usize, Behind)>,
     /// True if a surface is a wall with conditions, behind which the motion may be.
     guarded: PerSurface<bool, Sys::Gaps>,
     has_guarded: bool,
@@ -135,6 +139,7 @@ impl<Sys: Impacting> Watch<Sys> {
             here: None,
             sizes: state,
             sizes_at_start: state,
+            least_sizes: state,
             steps: 0,
             errors: 0.0,
             held: Held::none(&zeros),
@@ -231,25 +236,57 @@ impl<Sys: Impacting> Watch<Sys> {
         self.is_stale = false;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::none(&rates);
-        // A start may be the end of another motion, whose components have been larger.
-        let mut sizes = now.system.scale(now.t, now.state);
-        for (size, value) in sizes.as_mut_slice().iter_mut().zip(now.state.as_slice()) {
-            *size = size.max(value.abs());
-        }
-        (self.sizes, self.sizes_at_start) = (sizes, sizes);
+        self.least_sizes = self.sizes_of_start(now)?;
+        self.sizes = self.sized(now.state);
+        self.sizes_at_start = self.sizes;
         self.relocate(&mut hits, &rates, now)?;
+        quieten_at_start(&mut hits, &rates, now)?;
         Ok(hits)
     }
 
     /// Updates the sizes after an impact: components that it changed take their present size, the others keep the
     /// rounding errors of the flight.
     pub(super) fn resize(&mut self, before: &Sys::State, after: &Sys::State) {
+        let sized = self.sized(after);
         let states = before.as_slice().iter().zip(after.as_slice());
-        for (size, (before, after)) in self.sizes.as_mut_slice().iter_mut().zip(states) {
+        let changed = states.zip(sized.as_slice());
+        for (size, ((before, after), new)) in self.sizes.as_mut_slice().iter_mut().zip(changed) {
             if before != after {
-                *size = *after;
+                *size = *new;
             }
         }
+    }
+
+    /// Sizes of the components after an impact that leads to this state.
+    fn sized(&self, state: &Sys::State) -> Sys::State {
+        let mut sizes = *state;
+        let entries = sizes.as_mut_slice().iter_mut();
+        for (size, least) in entries.zip(self.least_sizes.as_slice()) {
+            *size = size.abs().max(*least);
+        }
+        sizes
+    }
+
+    /// The sizes of the motion of which the start of a run is the end, if it lies behind a wall by no more than their rounding
+    /// errors, but by more than its own; 0 otherwise.
+    fn sizes_of_start(&self, now: &mut Moment<'_, Sys>) -> Result<Sys::State, Outcome> {
+        let gaps = measured(now)?;
+        let own = *now.state;
+        let mut larger = now.system.scale(now.t, &own);
+        for (size, value) in larger.as_mut_slice().iter_mut().zip(own.as_slice()) {
+            *size = size.max(value.abs());
+        }
+        for (surface, &gap) in gaps.as_slice().iter().enumerate() {
+            let is_behind = gap < 0.0 && !self.is_passable(surface);
+            if is_behind
+                && now.system.surface_active(surface, now.t, now.state)
+                && -gap <= 2.0 * rounding(now, surface, &larger)
+                && -gap > 2.0 * rounding(now, surface, &own)
+            {
+                return Ok(larger);
+            }
+        }
+        Ok(own.zeroed())
     }
 
     /// The surfaces at hand at a position that smooth motion did not reach: at the start of a run or after a reset.
@@ -318,7 +355,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let is_at_hand = |surface: usize| hits.is_at_hand(surface) || held.is_held(surface);
         if (0..self.gaps.count()).all(is_at_hand) {
             self.gaps = rates.zeroed();
-            self.sizes = *now.state;
+            self.sizes = self.sized(now.state);
             return Ok(());
         }
         let mut gaps = match here {
@@ -334,7 +371,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.gaps = gaps;
         // The gaps now have the rounding errors of the last flight; later gaps have those of the next one.
         let checked = self.check_negative(now);
-        self.sizes = *now.state;
+        self.sizes = self.sized(now.state);
         checked
     }
 

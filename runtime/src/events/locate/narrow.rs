@@ -45,7 +45,7 @@ impl Line<'_> {
             };
             gap(0).abs().max(gap(1).abs())
         };
-        let grown = size(&narrowed);
+        let (grown, bracket) = (size(&narrowed), narrowed.bracket());
         let nearby = before.gap.abs().max(after.gap.abs());
         let mut is_peak = || {
             let inside = [0.25, 0.5, 0.75].map(|x| (self.gap)(x));
@@ -53,10 +53,11 @@ impl Line<'_> {
             let largest = sizes.fold(0.0_f64, f64::max);
             grown > PEAK * largest && grown > PEAK * (self.rounding)(trial)
         };
-        if grown > nearby || (PEAK * grown > nearby && is_peak()) {
-            Search::Pole(after.x.max(narrowed.bracket().after))
+        let is_infinite = nearby == f64::INFINITY;
+        if is_infinite || grown > nearby || (PEAK * grown > nearby && is_peak()) {
+            Search::Pole(bracket.after, after.x.max(bracket.after))
         } else {
-            Search::Falls(narrowed.bracket())
+            Search::Falls(bracket)
         }
     }
 }
