@@ -263,10 +263,9 @@ pub fn with_outputs<'m>(
         .iter()
         .find(|(name, _)| is_column(entry.description(), name))
     {
-        let given = format!("{name} = {}", expression.text());
         return Err(CliError::value(
             "--output",
-            given,
+            expression.text(),
             format!("another name, such as {name}_2: tables have a column `{name}`"),
         ));
     }
@@ -280,14 +279,8 @@ pub fn with_outputs<'m>(
 /// True if tables of runs have a column of this name without any output.
 fn is_column(description: &Description, name: &str) -> bool {
     ["event", "mode", "energy_error"].contains(&name)
-        || names::coordinates(description).any(|coordinate| {
-            [
-                coordinate.to_owned(),
-                names::velocity(coordinate),
-                names::momentum(coordinate),
-            ]
-            .contains(&name.to_owned())
-        })
+        || names::is_quantity(description, name)
+        || names::coordinates(description).any(|coordinate| names::momentum(coordinate) == name)
 }
 
 /// The model with the expressions as additional outputs after its own, in their order.

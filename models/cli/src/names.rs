@@ -2,7 +2,9 @@
 
 use dalembert::describe::Description;
 use dalembert_driver::names;
-pub use dalembert_driver::names::{column, coordinates, momentum, outputs, surfaces, velocity};
+pub use dalembert_driver::names::{
+    column, coordinates, is_quantity, momentum, of_run, outputs, surfaces, velocity,
+};
 
 use crate::error::CliError;
 

@@ -100,8 +100,8 @@ fn header(description: &Description) -> Vec<String> {
     header.extend(names::coordinates(description).map(names::velocity));
     header.extend(energy(description).map(|()| "energy".to_owned()));
     header.extend(names::outputs(description));
-    header.extend((!description.modes.is_empty()).then(|| "mode".to_owned()));
-    header.push("event".to_owned());
+    header.extend((!description.modes.is_empty()).then(|| names::of_run(description, "mode")));
+    header.push(names::of_run(description, "event"));
     header
 }
 

@@ -565,7 +565,22 @@ fn a_kink_at_an_equilibrium_leaves_its_stability_open() {
     // Close to 0, rounding hides the kink.
     let pendulum = "M { coordinates { th: angle; } lagrangian = dot(th)^2/2 - 9.81*(1 - cos(th)); \
         forces { f: -dot(th)*d(th); p: 20*sqrt(2 - 2*cos(th))*d(th); } initial { until = 1; } }";
+    // The slope of the root is infinite at 0, although the chain rule gives 0 there.
+    let cusp = "M { coordinates { x; } field { dot(x) = -x + 2*(x^2)^(1/3); } }";
+    let ridge =
+        "M { coordinates { x; y; } field { dot(x) = -x + 2*(x^2*y^2)^(1/4); dot(y) = -y; } }";
+    let pushed = "M { coordinates { x; } lagrangian = (dot(x)^2 - x^2)/2; \
+        forces { f: 2*(x^2)^(1/3)*d(x) - dot(x)*d(x); } }";
+    // Large derivatives of other rates, and tiny units, hide no kink.
+    let stiff_beside = "M { coordinates { x; v; z; } field { dot(x) = v; dot(v) = -1e12*x - 1e-3*v; dot(z) = -z + 2*abs(z); } }";
+    let light = "M { coordinates { x; } parameters { m > 0 = 1e-26; } lagrangian = m*(dot(x)^2 - x^2)/2; \
+        forces { f: -m*dot(x)*d(x) + m*abs(x)*d(x); } }";
     for (model, across) in [
+        (stiff_beside, "`z`"),
+        (light, "`x`"),
+        (cusp, "`x`"),
+        (ridge, "`x` and of `y`"),
+        (pushed, "`x`"),
         (half, "`x`"),
         (first, "`x`"),
         (root, "`x` and of `y`"),
@@ -593,6 +608,13 @@ fn a_kink_at_an_equilibrium_leaves_its_stability_open() {
             found.output
         );
     }
+    let output = "M { coordinates { x; } lagrangian = dot(x)^2/2 - x^2; initial { x = 1; } outputs { i: 1/(x - 1); } }";
+    let found = run_on(output, "linearise -");
+    assert!(
+        found.output.contains("the output `i`, or its derivative"),
+        "{}",
+        found.output
+    );
     // All derivatives of a rate are 0 at the equilibrium.
     let flat =
         "M { coordinates { x; y; } field { dot(x) = y^2; dot(y) = y; } initial { until = 1; } }";

@@ -101,14 +101,28 @@ fn member(name: &str) -> String {
 /// column.
 pub fn outputs(description: &Description) -> impl Iterator<Item = String> {
     description.outputs.iter().map(|output| {
-        let is_taken = OTHER_COLUMNS.contains(output)
-            || coordinates(description)
-                .any(|coordinate| coordinate == *output || velocity(coordinate) == *output);
-        match is_taken {
+        match OTHER_COLUMNS.contains(output) || is_quantity(description, output) {
             true => format!("{OUTPUT}{output}"),
             false => (*output).to_owned(),
         }
     })
+}
+
+/// The column of a table of runs for something that is no quantity of the model: this name, or `run.NAME` if a quantity that
+/// a table of members may have is called so.
+pub fn of_run(description: &Description, name: &str) -> String {
+    match is_quantity(description, name) {
+        true => format!("run.{name}"),
+        false => name.to_owned(),
+    }
+}
+
+/// True for the name of a coordinate, a velocity or a parameter: tables of members have such columns.
+pub fn is_quantity(description: &Description, name: &str) -> bool {
+    let mut parameters = description.parameters.iter();
+    parameters.any(|parameter| parameter.name == name)
+        || coordinates(description)
+            .any(|coordinate| coordinate == name || velocity(coordinate) == name)
 }
 
 /// Columns of tables of runs that belong to no quantity of the model's own.

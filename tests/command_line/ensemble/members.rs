@@ -98,3 +98,47 @@ const TWO_MODES: &str = "
         }
         transitions { go: a -> b when x >= 1 => reset { y = 5; dot(y) = 2; }; }
     }";
+
+/// Outputs with the names of other columns, and a coordinate with that of the column of surfaces.
+const SAME_NAMES: &str = "
+    Same {
+        coordinates { event; }
+        parameters { k > 0 = 1; }
+        lagrangian = dot(event)^2/2 - k*event^2/2;
+        initial { event = 1; until = 2; }
+        outputs { k: 2 + event; }
+    }";
+
+#[test]
+fn members_from_a_table_of_a_run_have_its_states_and_no_outputs() {
+    let folder = Folder::new("same_names");
+    let path = folder.path("run.csv");
+    let run = ["simulate", "-", "--samples", "3", "--csv", &path];
+    let done = run_on(SAME_NAMES, &run);
+    assert!(done.errors.is_empty(), "{}", done.errors);
+    let table = fs::read_to_string(&path).unwrap();
+    assert!(
+        table.starts_with("t,event,event_dot,energy,out.k,run.event\n"),
+        "{table}"
+    );
+    let done = run_on(
+        SAME_NAMES,
+        &["ensemble", "-", "--from", &path, "--csv", "-"],
+    );
+    assert!(done.errors.is_empty(), "{}", done.errors);
+    let header = done.output.lines().next().unwrap();
+    assert!(
+        header.contains("in.event,in.event_dot") && !header.contains("in.k"),
+        "{header}"
+    );
+    assert_eq!(
+        numbers_of(&done.output, "in.event"),
+        numbers_of(&table, "event")
+    );
+    let refused = run_on(SAME_NAMES, &["simulate", "-", "--output", "k = 7"]);
+    assert!(
+        refused.errors.contains("`k = 7` is not accepted"),
+        "{}",
+        refused.errors
+    );
+}

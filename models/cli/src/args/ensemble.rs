@@ -28,6 +28,7 @@ More examples:
 
 /// `ensemble`
 #[derive(Debug, Args)]
+#[command(mut_arg("input", |arg| arg.hide(true)))]
 pub struct EnsembleArgs {
     /// Common part of all members.
     #[command(flatten)]

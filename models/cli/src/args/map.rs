@@ -39,6 +39,7 @@ More examples:
 
 /// `map`
 #[derive(Debug, Args)]
+#[command(mut_arg("input", |arg| arg.hide(true)))]
 pub struct MapArgs {
     /// Model, start and laws of all cells.
     #[command(flatten)]

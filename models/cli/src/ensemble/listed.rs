@@ -110,7 +110,8 @@ fn parse(
         .headers()
         .map_err(|error| invalid(error.to_string()))?;
     let place_of = |column: &str| header.iter().position(|name| name == column);
-    let in_mode = mode.and_then(|mode| Some((place_of(MODE)?, mode)));
+    let mode_column = names::of_run(description, MODE);
+    let in_mode = mode.and_then(|mode| Some((place_of(&mode_column)?, mode)));
     let is_state = !header.iter().any(|name| name.starts_with(INPUT));
     let time = place_of(TIME).filter(|_| depends_on_time && is_state);
     let mut columns = columns(place, header, description)?;
@@ -139,7 +140,7 @@ fn parse(
             let found = record.get(index).unwrap_or_default();
             if found != mode {
                 let expected = format!("`{mode}`, the mode in which the members start (--mode)");
-                return Err(CliError::value(place(MODE), found, expected));
+                return Err(CliError::value(place(&mode_column), found, expected));
             }
         }
         if let Some(found) = time.and_then(|index| record.get(index))
@@ -230,11 +231,12 @@ fn columns(
         let expected = format!("`{INPUT}{name}`, as other columns begin with `{INPUT}`");
         return Err(CliError::value(place, name, expected));
     }
-    let outputs: Vec<String> = names::outputs(description).collect();
+    let of_run = OTHERS.iter().map(|name| names::of_run(description, name));
+    let others: Vec<String> = of_run.chain(names::outputs(description)).collect();
     let ours = |name: &str| match is_ensemble {
         true => name.strip_prefix(INPUT).map(str::to_owned),
         false => {
-            let is_other = OTHERS.contains(&name) || outputs.iter().any(|output| output == name);
+            let is_other = others.iter().any(|other| other == name);
             (is_quantity(name) || !is_other).then(|| name.to_owned())
         }
     };

@@ -11,7 +11,7 @@
 //! |---|---|
 //! | `sample.rs` | the rates and the outputs at a state, with their derivatives |
 //! | `nearby.rs` | eigenvalues at the states that rounding does not tell from an equilibrium |
-//! | `kinks.rs` | places where the derivatives of the rates jump |
+//! | `kinks.rs` | places where the derivatives of the rates may jump |
 //! | `spectrum.rs` | eigenvalues, and how far rounding may move them |
 //! | `trim.rs` | an equilibrium near a state |
 //! | `sampled.rs` | the motion from one sample to the next, across impacts |
@@ -79,7 +79,7 @@ pub struct Linearisation {
     pub(crate) nearby: Vec<Vec<[f64; 2]>>,
     /// Largest real part of each eigenvalue that counts as 0.
     pub(crate) margins: Vec<f64>,
-    /// Indices of the components across whose values the derivatives of the rates jump.
+    /// Indices of the components across whose values the derivatives of the rates jump, or are not shown to be continuous.
     pub kinks: Vec<usize>,
     /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`]. None after a search.
     pub unsteady: Vec<usize>,
@@ -106,7 +106,7 @@ pub enum Tendency {
     /// No eigenvalue has a positive real part, and this many have the real part 0 up to rounding: the linearisation
     /// does not decide the stability.
     Neutral(usize),
-    /// The derivatives of the rates jump here: there is no linearisation.
+    /// The derivatives of the rates jump here, or are not shown to be continuous: a linearisation may not exist.
     Kinked,
     /// The equations depend on time: eigenvalues at one time do not decide the stability.
     OfOneTime,
@@ -198,9 +198,15 @@ pub enum Unlinear {
     /// A rate, an output or a derivative does not exist.
     #[error("the equations have no derivative at this state")]
     Fault(Fault),
-    /// A rate, an output or a derivative is not finite.
+    /// A rate or its derivative is not finite.
     #[error("the equations are not finite at this state")]
     NotFinite,
+    /// An output or its derivative is not finite.
+    #[error("the output `{name}`, or its derivative, is not finite at this state")]
+    OutputNotFinite {
+        /// The output.
+        name: &'static str,
+    },
     /// The sampled motion ends early.
     #[error("the motion ends at t = {t}: {outcome}")]
     Ended {
@@ -235,7 +241,7 @@ impl Unlinear {
             Self::Modes => "modes",
             Self::Unreduced => "unreduced",
             Self::Fault(_) => "fault",
-            Self::NotFinite => "not_finite",
+            Self::NotFinite | Self::OutputNotFinite { .. } => "not_finite",
             Self::Ended { .. } => "ended",
             Self::Undefined(undefined) => undefined.kind(),
             Self::NoEquilibrium { .. } | Self::OffLevel { .. } => "no_equilibrium",

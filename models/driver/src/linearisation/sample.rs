@@ -44,12 +44,14 @@ pub(super) struct Sample {
     pub by_levels: Vec<Vec<f64>>,
 }
 
-impl Sample {
-    fn is_finite(&self) -> bool {
-        let rows = self.by_rates.iter().chain(&self.by_outputs);
-        let mut values = rows.chain([&self.rates, &self.outputs]).flatten();
-        values.all(|value| value.is_finite())
-    }
+/// The index of the first value that is not finite, or has a derivative that is not.
+fn not_finite(values: &[f64], slopes: &[Vec<f64>]) -> Option<usize> {
+    let are_finite = |(value, slopes): (&f64, &Vec<f64>)| {
+        core::iter::once(value)
+            .chain(slopes)
+            .all(|it| it.is_finite())
+    };
+    values.iter().zip(slopes).position(|pair| !are_finite(pair))
 }
 
 /// The components of the state with these positions and velocities.
@@ -102,7 +104,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
     /// The values at a state, with all derivatives.
     ///
     /// # Errors
-    /// [`Unlinear::Fault`] and [`Unlinear::NotFinite`].
+    /// [`Unlinear::Fault`], [`Unlinear::NotFinite`] and [`Unlinear::OutputNotFinite`].
     pub fn at(&self, state: &[f64], inputs: &[f64]) -> Result<Sample, Unlinear> {
         let all = state.len() + inputs.len();
         let mut sample = Sample::default();
@@ -121,22 +123,43 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
                 }
             }
         }
-        match sample.is_finite() {
-            true => Ok(sample),
-            false => Err(Unlinear::NotFinite),
+        if not_finite(&sample.rates, &sample.by_rates).is_some() {
+            return Err(Unlinear::NotFinite);
+        }
+        match not_finite(&sample.outputs, &sample.by_outputs) {
+            Some(index) => Err(Unlinear::OutputNotFinite {
+                name: self.system.description().outputs[index],
+            }),
+            None => Ok(sample),
         }
     }
 
-    /// True if a state lies inside its charts and not behind a wall.
-    pub fn is_allowed(&self, state: &[f64], inputs: &[f64]) -> bool {
-        let Ok(seeded) = self.seeded(self.t, state, inputs, 0) else {
-            return false;
-        };
+    /// The state of the system with these components; `None` if there is none.
+    fn whole(&self, state: &[f64], inputs: &[f64]) -> Option<S::State> {
+        let seeded = self.seeded(self.t, state, inputs, 0).ok()?;
         let mut whole = self.system.zero_state();
         let entries = whole.as_mut_slice().iter_mut();
         for (entry, dual) in entries.zip(seeded.row.as_slice()) {
             *entry = dual.value;
         }
+        Some(whole)
+    }
+
+    /// The system with these inputs, and its state with these components; `None` if there is none.
+    pub fn with_inputs(&self, state: &[f64], inputs: &[f64]) -> Option<(S, S::State)> {
+        let whole = self.whole(state, inputs)?;
+        let mut system = self.system.clone();
+        for (k, &value) in inputs.iter().enumerate() {
+            system.set_parameter(self.inputs[0] + k, value);
+        }
+        Some((system, whole))
+    }
+
+    /// True if a state lies inside its charts and not behind a wall.
+    pub fn is_allowed(&self, state: &[f64], inputs: &[f64]) -> bool {
+        let Some(whole) = self.whole(state, inputs) else {
+            return false;
+        };
         self.system.outside_chart(&whole).is_none()
             && domain::is_behind_wall(self.system, self.t, &whole, domain::size(state)) == Ok(false)
     }

@@ -124,7 +124,7 @@ fn told(tendency: Tendency, found: &Linearisation) -> String {
                 .map(|&index| format!("`{}`", found.components[index]));
             let across: Vec<String> = across.collect();
             format!(
-                "not decided by the linearisation: at this value of {}, derivatives of the rates jump",
+                "not decided by the linearisation: at this value of {}, derivatives of the rates jump or may jump",
                 across.join(" and of ")
             )
         }
