@@ -26,6 +26,7 @@ mod root;
 mod search;
 mod series;
 mod sides;
+mod sizes;
 mod sliding;
 mod strike;
 mod tangency;

@@ -31,9 +31,6 @@ const FALLS: u32 = 1024;
 const CLOSER: f64 = 1.0 / 256.0;
 const FINEST_PART: f64 = 1e-12;
 
-/// Number of halvings of the distance to a pole behind which the sign of a gap is looked for.
-const CLOSEST: u32 = 40;
-
 /// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
@@ -474,33 +471,6 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut is_clear = |part: f64, gap: f64| gap > 2.0 * self.rounding_at(surface, part, step);
         let falls = !is_known && is_clear(ends[0], first) && is_clear(ends[1], -last);
         Ok(falls.then_some(slope))
-    }
-
-    /// True if a wall counts behind a pole of its gap while the gap is negative there: the motion comes to the forbidden
-    /// side without an impact. The gap is evaluated ever closer to the pole, where it is large, as are its rounding errors.
-    fn leads_behind<Step: Stepper<Sys>>(
-        &self,
-        surface: usize,
-        [pole, after]: [f64; 2],
-        step: &mut StepView<'_, Sys, Step>,
-    ) -> bool {
-        if self.is_passable(surface) {
-            return false;
-        }
-        let mut way = after - pole;
-        for _ in 0..CLOSEST {
-            let part = pole + way;
-            let gap = gap_at(surface, step, part);
-            step.counters.event_evaluations += 1;
-            if gap < 0.0
-                && gap < -2.0 * self.rounding_at(surface, part, step)
-                && is_active(surface, step, part)
-            {
-                return true;
-            }
-            way *= 0.5;
-        }
-        false
     }
 
     /// The largest magnitudes of the components up to this fraction of the step: the motion behind a hit does not take

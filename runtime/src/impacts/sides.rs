@@ -19,7 +19,7 @@ use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// How the motion came behind a surface without an impact.
+/// Causes of a motion behind a surface without an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Behind {
     /// The surface began to count.
@@ -27,6 +27,9 @@ pub(super) enum Behind {
     /// The gap changed its sign at a pole, or jumped.
     Pole,
 }
+
+/// Number of halvings of the distance to a pole behind which the sign of a gap is looked for.
+const CLOSEST: u32 = 40;
 
 /// Bound for the relative rounding error of a component or of the time.
 pub(super) const UNITS: f64 = 32.0 * f64::EPSILON;
@@ -267,6 +270,33 @@ impl<Sys: Impacting> Watch<Sys> {
         if meets || (gap < 0.0 && start > 0.0 && !self.is_sunk(surface, step, glance)) {
             self.gaps.as_mut_slice()[surface] = f64::MIN_POSITIVE.copysign(start);
         }
+    }
+
+    /// True if a wall counts behind a pole of its gap while the gap is negative there: the motion comes to the forbidden
+    /// side without an impact. The gap is evaluated ever closer to the pole, where it is large, as are its rounding errors.
+    pub(super) fn leads_behind<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        [pole, after]: [f64; 2],
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> bool {
+        if self.is_passable(surface) {
+            return false;
+        }
+        let mut way = after - pole;
+        for _ in 0..CLOSEST {
+            let part = pole + way;
+            let gap = gap_at(surface, step, part);
+            step.counters.event_evaluations += 1;
+            if gap < 0.0
+                && gap < -2.0 * self.rounding_at(surface, part, step)
+                && is_active(surface, step, part)
+            {
+                return true;
+            }
+            way *= 0.5;
+        }
+        false
     }
 
     /// Ends the run if the step was cut at this fraction because the motion is behind a surface there.

@@ -135,10 +135,8 @@ impl<Sys: Impacting> Impacts<Sys> {
                 }
                 if enters || now.system.position(now.state) != now.system.position(&arrived) {
                     self.land(&arrived, (&mut hits, &rates), now, observer)?;
-                    // The way back to the surface takes no time that can be resolved.
-                    let returns = hits.is_at_hand(surface) && rates.as_slice()[surface] < 0.0;
-                    if !enters && returns && self.accumulation.passes_ever_faster(surface, now.t) {
-                        return Err(Outcome::Zeno { t: now.t, surface });
+                    if !enters {
+                        self.check_way_back(surface, (&hits, &rates), now.t)?;
                     }
                 }
                 if enters {
@@ -200,6 +198,21 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.resting.keep(hits, now, observer)?;
         self.watch.hold(self.resting.held());
         Ok(())
+    }
+
+    /// Ends the run if resets on this surface followed each other ever faster, and the way back from the last one takes no time
+    /// that can be resolved.
+    fn check_way_back(
+        &self,
+        surface: usize,
+        (hits, rates): (&Hits<Sys::Gaps>, &Sys::Gaps),
+        t: f64,
+    ) -> Result<(), Outcome> {
+        let returns = hits.is_at_hand(surface) && rates.as_slice()[surface] < 0.0;
+        match returns && self.accumulation.passes_ever_faster(surface, t) {
+            true => Err(Outcome::Zeno { t, surface }),
+            false => Ok(()),
+        }
     }
 
     /// The gap rates in the limit of impacts on these surfaces, which are rounding errors for them.

@@ -75,7 +75,7 @@ pub(super) struct Watch<Sys: Impacting> {
     /// The sizes at the start of the last step. A cut uses them, because the motion behind it does not contribute.
     pub(super) sizes_at_start: Sys::State,
     /// The least sizes after impacts: 0, or those of the motion of which the start of the run is the end.
-    least_sizes: Sys::State,
+    pub(super) least_sizes: Sys::State,
     /// Number of steps since the last impact. Each has rounded the state.
     pub(super) steps: u32,
     /// Sum of the local errors of these steps, in units of the tolerance.
@@ -242,51 +242,6 @@ impl<Sys: Impacting> Watch<Sys> {
         self.relocate(&mut hits, &rates, now)?;
         quieten_at_start(&mut hits, &rates, now)?;
         Ok(hits)
-    }
-
-    /// Updates the sizes after an impact: components that it changed take their present size, the others keep the
-    /// rounding errors of the flight.
-    pub(super) fn resize(&mut self, before: &Sys::State, after: &Sys::State) {
-        let sized = self.sized(after);
-        let states = before.as_slice().iter().zip(after.as_slice());
-        let changed = states.zip(sized.as_slice());
-        for (size, ((before, after), new)) in self.sizes.as_mut_slice().iter_mut().zip(changed) {
-            if before != after {
-                *size = *new;
-            }
-        }
-    }
-
-    /// Sizes of the components after an impact that leads to this state.
-    fn sized(&self, state: &Sys::State) -> Sys::State {
-        let mut sizes = *state;
-        let entries = sizes.as_mut_slice().iter_mut();
-        for (size, least) in entries.zip(self.least_sizes.as_slice()) {
-            *size = size.abs().max(*least);
-        }
-        sizes
-    }
-
-    /// The sizes of the motion of which the start of a run is the end, if it lies behind a wall by no more than their rounding
-    /// errors, but by more than its own; 0 otherwise.
-    fn sizes_of_start(&self, now: &mut Moment<'_, Sys>) -> Result<Sys::State, Outcome> {
-        let gaps = measured(now)?;
-        let own = *now.state;
-        let mut larger = now.system.scale(now.t, &own);
-        for (size, value) in larger.as_mut_slice().iter_mut().zip(own.as_slice()) {
-            *size = size.max(value.abs());
-        }
-        for (surface, &gap) in gaps.as_slice().iter().enumerate() {
-            let is_behind = gap < 0.0 && !self.is_passable(surface);
-            if is_behind
-                && now.system.surface_active(surface, now.t, now.state)
-                && -gap <= 2.0 * rounding(now, surface, &larger)
-                && -gap > 2.0 * rounding(now, surface, &own)
-            {
-                return Ok(larger);
-            }
-        }
-        Ok(own.zeroed())
     }
 
     /// The surfaces at hand at a position that smooth motion did not reach: at the start of a run or after a reset.
