@@ -382,6 +382,152 @@ fn a_motion_that_leaves_the_ground_at_rest_hits_it_when_it_returns() {
     }
 }
 
+/// A point at the bottom of a round wall, which the force leaves free: `x = -t^3/12`, `y = t^4/48`. The gap rises like
+/// `t^4/24`. One step of a power series ends far behind the wall.
+static BOWL: Text = Text::new(
+    "Bowl {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        forces { pull: -t/2*d(x) - dot(x)*d(y); }
+        impacts { wall: 1 - x^2 - (y - 1)^2 >= 0 => impact_plastic; }
+    }",
+);
+
+#[test]
+fn a_motion_that_leaves_a_wall_like_a_power_of_time_is_not_held() {
+    let bowl = BOWL.model();
+    // t^4/24 = t^6/144 + t^8/2304
+    let back = f64::sqrt((-16.0 + f64::sqrt(640.0)) / 2.0);
+    for &integrator in Integrator::every() {
+        for until in [1.0, 2.1, 3.0, 7.5] {
+            let course = Course::new(&bowl, &[0.0; 2], &[0.0; 2], until).tol(1e-12);
+            let mut holds = Holds(Vec::new());
+            let run = course.step(1e-2).resting().observed(integrator, &mut holds);
+            let case = format!("{} until {until}: {:?}", integrator.name(), run.counters);
+            assert_eq!(run.outcome, Outcome::Done, "{case}");
+            assert_eq!(run.counters.impacts, u64::from(until > back), "{case}");
+            if let Some(first) = holds.0.first().filter(|first| first.begins) {
+                assert!((first.t - back).abs() < 1e-4, "{case}: {}", first.t);
+            }
+        }
+    }
+}
+
+/// Two bodies that forces press to the ground, and a third one that touches them. All are at 0, so that their coordinates
+/// show no size of rounding errors: those of the forces, which cancel, must not move them.
+const STACK: &str = "
+    Stack {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        forces { down: -t*d(x); FORCES }
+        impacts { SURFACES }
+    }";
+
+#[test]
+fn a_body_that_touches_a_pressed_stack_is_not_hit() {
+    let surfaces = [
+        "ground: x >= 0; below: y >= x; above: z >= y;",
+        "above: z >= y; below: y >= x; ground: x >= 0;",
+        "below: y >= x; above: z >= y; ground: x >= 0;",
+    ];
+    // The force on the third body is 0, or turns at t = 1.
+    let forces = [
+        ("press: -3*d(y);", 0.0),
+        ("press: (2*t - 3)*d(y);", 0.0),
+        ("press: (t - 1)*d(z);", f64::powi(0.3, 3) / 6.0),
+    ];
+    for surfaces in surfaces {
+        for (forces, end) in forces {
+            let text = STACK
+                .replace("FORCES", forces)
+                .replace("SURFACES", surfaces);
+            let stack = Text::new(text.leak()).model();
+            for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Gauss6] {
+                let course = Course::new(&stack, &[0.0; 3], &[0.0; 3], 1.3).tol(1e-12);
+                let run = course.step(1e-2).resting().run(Setting::free(integrator));
+                let case = format!(
+                    "{} {surfaces} {forces}: {:?}",
+                    integrator.name(),
+                    run.counters
+                );
+                assert_eq!(
+                    (run.outcome, run.counters.impacts),
+                    (Outcome::Done, 0),
+                    "{case}"
+                );
+                // A body that is released keeps a rate of the rounding of the time.
+                let [x, y, z] = run.q[..] else {
+                    panic!("{case}")
+                };
+                assert!(x == 0.0 && y.abs() < 1e-10, "{case}: {:?}", run.q);
+                assert!((z - end).abs() < 1e-8, "{case}: {:?}", run.q);
+                assert!(run.counters.accepted < 500, "{case}");
+            }
+        }
+    }
+}
+
+/// A body at rest on a wall that begins to move with an acceleration is held from the start, whatever the higher powers.
+#[test]
+fn a_wall_that_accelerates_holds_from_the_start() {
+    for way in [
+        "2*t^2",
+        "2*t^2 - t^3",
+        "2*t^2 + t^3",
+        "3*t^2 - t^5",
+        "t^2*(2 - t)",
+        "1 - cos(2*t)",
+    ] {
+        for law in ["elastic", "newton(0)", "newton(1/2)"] {
+            let text = format!(
+                "Wall {{ coordinates {{ x; }} lagrangian = dot(x)^2/2; impacts {{ up: x - ({way}) >= 0 => {law}; }} }}"
+            );
+            let wall = Text::new(text.leak()).model();
+            for &integrator in Integrator::every() {
+                let course = Course::new(&wall, &[0.0], &[0.0], 0.5).tol(1e-12);
+                let mut holds = Holds(Vec::new());
+                let run = course.step(1e-2).resting().observed(integrator, &mut holds);
+                let case = format!("{} {way} {law}: {:?}", integrator.name(), run.counters);
+                assert_eq!(
+                    (run.outcome, run.counters.impacts),
+                    (Outcome::Done, 0),
+                    "{case}"
+                );
+                assert_eq!((holds.0.len(), holds.0[0].t), (1, 0.0), "{case}");
+            }
+        }
+    }
+}
+
+/// A body on a slab on a lift that begins to rise like `t^3`. The slab presses on the lift from the start, the lift on the slab
+/// later in the first step. Both hold until `0.25 t^3 - 0.5 t^4` falls as fast as the body.
+static LIFT: Text = Text::new(
+    "Lift {
+        coordinates { x; y; }
+        lagrangian = dot(x)^2/2 + dot(y)^2;
+        forces { weight: (-11.25 + 15.75*t - 7*t^2 + t^3)*d(y); }
+        impacts { lift: x - 0.25*t^3 + 0.5*t^4 >= 0 => newton(0); slab: y - x >= 0 => newton(0); }
+    }",
+);
+
+#[test]
+fn a_pressure_that_begins_within_a_step_hides_no_other_surface() {
+    let lift = LIFT.model();
+    for &integrator in Integrator::every() {
+        let course = Course::new(&lift, &[0.0; 2], &[0.0; 2], 0.6).tol(1e-12);
+        let run = course.step(1e-3).resting().run(Setting::free(integrator));
+        let case = format!("{}: {:?}", integrator.name(), run.counters);
+        assert_eq!(
+            (run.outcome, run.counters.impacts),
+            (Outcome::Done, 0),
+            "{case}"
+        );
+        let height = 0.25 * f64::powi(0.6, 3) - 0.5 * f64::powi(0.6, 4);
+        assert!((run.q[0] - height).abs() < 1e-9, "{case}: {:?}", run.q);
+        assert!((run.q[1] - height).abs() < 1e-9, "{case}: {:?}", run.q);
+    }
+}
+
 /// A point leaves the ground slowly, and a force that grows brings it back. A long step ends far behind the ground, where
 /// rounding errors are larger than the height of the throw.
 #[test]

@@ -425,6 +425,61 @@ fn a_slide_ends_where_one_side_leads_away() {
     );
 }
 
+/// An oscillator with dry friction and a force, all of which are proportional to `mu`.
+static RUBBED: Text = Text::new(
+    "Rubbed {
+        coordinates { x; v; }
+        parameters { mu > 0 = 1; }
+        modes {
+            forward { field { dot(x) = v; dot(v) = 0.9*mu*cos(t) - mu - x; } }
+            backward { field { dot(x) = v; dot(v) = 0.9*mu*cos(t) + mu - x; } }
+        }
+        transitions { stop: forward -> backward when v <= 0; go: backward -> forward when v >= 0; }
+    }",
+);
+
+/// Across the surface, rates of 1e20 cancel. What is left by rounding is no reason for short steps.
+#[test]
+fn a_slide_of_large_numbers_takes_as_many_steps() {
+    let integrators = [
+        Integrator::Taylor,
+        Integrator::Dop853,
+        Integrator::Dopri5,
+        Integrator::Gauss6,
+    ];
+    for integrator in integrators {
+        let mut counts = Vec::new();
+        for size in [1.0, 1e9, 1e12, 1e20] {
+            let mut rubbed = RUBBED.model();
+            rubbed.set_parameter(0, size);
+            let start = state(&rubbed, &[0.0, 0.5 * size], &[0.0; 2]);
+            let course = Course::from_state(&rubbed, start, 12.0)
+                .tol(1e-10)
+                .step(1e-2);
+            let run = course.observed(integrator, &mut ());
+            assert_eq!(
+                run.outcome,
+                Outcome::Done,
+                "{}, {size:e}",
+                integrator.name()
+            );
+            let q = rubbed.position(&run.state);
+            let [x, v] = [q.as_slice()[0] / size, q.as_slice()[1] / size];
+            assert!(
+                (x - 0.133_138_283_5).abs() < 1e-6 && v.abs() < 1e-9,
+                "{x}, {v}"
+            );
+            counts.push(run.counters.accepted);
+        }
+        let most = counts.iter().max();
+        assert!(
+            most <= Some(&(3 * counts[0])),
+            "{}: {counts:?}",
+            integrator.name()
+        );
+    }
+}
+
 /// Two fields that lead to the line `x = 0` from both sides, along which transitions count up to `y = 1`.
 static BOUNDED: Text = Text::new(
     "Bounded {

@@ -1,6 +1,8 @@
 //! Location of the first fall of one gap along a step: on its polynomial if that has a bounded error, otherwise by
 //! enclosures.
 
+use core::cell::RefCell;
+
 use super::root::Polynomial;
 use super::search::{gap_at, rounding_along};
 use super::series::GapSeries;
@@ -24,13 +26,38 @@ pub(super) struct Known<'a, G: StateVector> {
     pub(super) whole: Option<TaylorModel>,
 }
 
+/// The largest magnitudes of the components, which give the rounding errors of a gap.
+pub(super) enum Sizes<S> {
+    Known(S),
+    /// Those up to this fraction of the step, for these sizes at its start; computed when they are first needed. The motion
+    /// behind a hit does not take place.
+    Until(f64, S),
+}
+
+impl<S: StateVector> Sizes<S> {
+    /// The magnitudes along the path of the step.
+    pub(super) fn along(&mut self, path: &mut Path<S>) -> &S {
+        if let Self::Until(until, at_start) = *self {
+            path.enclose();
+            let mut sizes = at_start;
+            for (i, size) in sizes.as_mut_slice().iter_mut().enumerate() {
+                let range = path.component(i, [0.0, until]).range();
+                *size = size.abs().max(range.magnitude());
+            }
+            *self = Self::Known(sizes);
+        }
+        let (Self::Known(sizes) | Self::Until(_, sizes)) = self;
+        sizes
+    }
+}
+
 /// The first fall of a gap, with its time to the last bits. If the polynomial of the gap does not show that there is
 /// one fall or none, enclosures of the gap decide.
 pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
     path: &mut Path<Sys::State>,
-    sizes: &Sys::State,
+    sizes: &mut Sizes<Sys::State>,
     Known {
         series,
         ends,
@@ -43,18 +70,23 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         evaluations += 1;
         gap_at(surface, step, part)
     };
+    let path = RefCell::new(path);
     let mut along = |part: [f64; 2]| {
         let certain = series.filter(|series| series.is_certain(surface));
         let model = certain.and_then(|series| series.on(surface, part));
         model.unwrap_or_else(|| {
             enclosures += 1;
+            let mut path = path.borrow_mut();
             path.enclose();
             let component = |i: usize| path.component(i, part);
             step.system
                 .gap_along(surface, path.time_model(part), &component)
         })
     };
-    let mut rounding = |part: f64| rounding_along(surface, step, part, sizes, &mut more);
+    let mut rounding = |part: f64| {
+        let sizes = sizes.along(&mut path.borrow_mut());
+        rounding_along(surface, step, part, sizes, &mut more)
+    };
     let plain = series.map_or(Plain::Unknown, |series| {
         plain_fall(surface, series, start, &mut gap)
     });

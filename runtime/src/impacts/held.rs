@@ -158,7 +158,8 @@ impl<G: StateVector> Held<G> {
         };
         let is_followed = solved.is_solved(&accelerations);
         let mut sizes = solved.sizes;
-        if sizes.as_slice().iter().any(|&size| size < 0.0) {
+        let is_one_of_several = self.iter().nth(1).is_some();
+        if is_one_of_several || sizes.as_slice().iter().any(|&size| size < 0.0) {
             self.drop_rounding(system, (t, state), &motion, &mut sizes)?;
         }
         Ok(Some((sizes, is_followed)))
@@ -193,7 +194,7 @@ impl<G: StateVector> Held<G> {
         system.gap_accelerations(t, state, &motion)
     }
 
-    /// Sets negative sizes to 0 that may be rounding errors: a surface between bodies that fall together has no force.
+    /// Sets sizes to 0 that may be rounding errors: a surface between bodies that fall together has no force.
     fn drop_rounding<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -214,7 +215,7 @@ impl<G: StateVector> Held<G> {
         for surface in self.iter() {
             let size = &mut sizes.as_mut_slice()[surface];
             let compliance = system.contact(surface, t, state)?.constrained_compliance;
-            if *size < 0.0 && *size * *size * compliance <= FORCELESS * square {
+            if *size * *size * compliance <= FORCELESS * square {
                 *size = 0.0;
             }
         }

@@ -5,6 +5,7 @@ use super::bottom::Brief;
 use super::held::Held;
 use super::hits::Hits;
 use super::resting::Resting;
+use super::search::{FLAT, gap_at, is_active};
 use super::tangency::second_rate_at;
 use super::watch::Watch;
 use crate::audit::{Audit, Auditor};
@@ -162,7 +163,7 @@ impl<Sys: Impacting> Impacts<Sys> {
     /// rate are 0.
     ///
     /// NOTE: dense output of a step across a kink of the force dips before the kink. The dip is no impact, and the law of the
-    /// surface would make hops of it.
+    /// surface would make hops of it. A motion that has left the surface by then comes back to it by an impact.
     fn pressed_from<Step: Stepper<Sys>>(
         &self,
         theta: f64,
@@ -198,7 +199,46 @@ impl<Sys: Impacting> Impacts<Sys> {
                 false => before = middle,
             }
         }
-        Ok(Some((surface, after)))
+        if self.rises(surface, after, step) {
+            return Ok(None);
+        }
+        // Other surfaces were searched up to the hit only. One that presses before holds the motion together with this one.
+        let mut others = (0..step.system.surface_count()).filter(|other| *other != surface);
+        let is_met = others.any(|other| holds(other) && self.is_behind(other, after, step));
+        Ok(Some((surface, if is_met { 0.0 } else { after })))
+    }
+
+    /// True if the gap of a surface that is touched at the start of the step rises up to this part as its second rates have it.
+    /// In balance they are 0.
+    fn rises<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        part: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> bool {
+        let rate = |k: u32| {
+            let there = part * ((f64::from(k) + 0.5) / f64::from(RISES));
+            second_rate_at(surface, step, there).map_or(0.0, |second| second.max(0.0))
+        };
+        let mean = (0..RISES).map(rate).sum::<f64>() / f64::from(RISES);
+        let elapsed = part * step.length();
+        let rise = 0.5 * mean * elapsed * elapsed;
+        let gap = gap_at(surface, step, part);
+        step.counters.event_evaluations += 1 + u64::from(RISES);
+        let rounding = self.watch.rounding_at(surface, part, step);
+        gap > FLAT * rounding && gap > LEAST_SHARE * rise && gap < 4.0 * rise
+    }
+
+    /// True if the motion is behind a surface that counts at this part of the step, by more than rounding.
+    fn is_behind<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        part: f64,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> bool {
+        let rounding = self.watch.rounding_at(surface, part, step);
+        step.counters.event_evaluations += 1;
+        gap_at(surface, step, part) < -2.0 * rounding && is_active(surface, step, part)
     }
 
     /// The end of a run at a surface with the law [`Law::Stop`].
@@ -228,6 +268,11 @@ impl<Sys: Impacting> Impacts<Sys> {
 
 /// Number of halvings of a step that find where a force begins to press.
 const ONSET: u32 = 40;
+
+/// Number of places at which the second rate of a gap is evaluated, and the least share of the rise that it gives which a
+/// gap has: `2/n` for a gap like the power `n` of time.
+const RISES: u32 = 8;
+const LEAST_SHARE: f64 = 1.0 / 16.0;
 
 /// Second rate of a gap, relative to that at the end of the step, from which on a force presses.
 const FAINT: f64 = 1.0 / (1 << 20) as f64;

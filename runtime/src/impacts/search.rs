@@ -4,11 +4,11 @@
 use core::ops::ControlFlow;
 
 use super::departure::Departure;
-use super::fall::{Known, first_fall};
+use super::fall::{Known, Sizes, first_fall};
 use super::glance::Glance;
 use super::place::Place;
 use super::sides::Behind;
-use super::tangency::crosses_at_rest;
+use super::tangency::{crosses_at_rest, is_accelerated};
 use super::told::Told;
 use super::watch::{Graze, Watch};
 use crate::contract::Impacting;
@@ -197,8 +197,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let ends = [gap, glance.gaps.as_slice()[surface]];
         // The motion behind another hit does not take place, and adds no rounding errors.
         let mut sizes = match until < 1.0 {
-            true => self.sizes_until(until),
-            false => self.sizes,
+            true => Sizes::Until(until, self.sizes_at_start),
+            false => Sizes::Known(self.sizes),
         };
         // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate leaves the
         // touched surface, whatever the rounding error of the gap.
@@ -210,7 +210,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 ends,
                 whole,
             };
-            let found = first_fall(surface, step, &mut self.path, &sizes, known, start);
+            let found = first_fall(surface, step, &mut self.path, &mut sizes, known, start);
             let is_open = !(leaves_at_once && matches!(found, Search::Pole(..)));
             if is_open && let Some(part) = self.hidden(surface, found, start, step) {
                 match self.depart(surface, start, step, glance)? {
@@ -226,7 +226,7 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
                 Search::Sinks(part) if part == 0.0 && self.is_far_off(surface, start, step) => {
                     start.until *= CLOSER;
-                    sizes = self.sizes_until(start.until);
+                    sizes = Sizes::Until(start.until, self.sizes_at_start);
                     continue;
                 }
                 Search::Clear => {
@@ -298,7 +298,7 @@ impl<Sys: Impacting> Watch<Sys> {
             return Ok(ControlFlow::Continue(Fall::Elsewhere));
         }
         let last = glance.gaps.as_slice()[surface];
-        if !self.falls_at_start(surface, (places.before, last), start, step) {
+        if !self.falls_at_start(surface, (places.before, last), start, step)? {
             let approach = self.approach(surface, step, places)?;
             if let Some((there, rate)) = approach {
                 return Ok(ControlFlow::Break(Found::Hit(there, rate)));
@@ -378,24 +378,24 @@ impl<Sys: Impacting> Watch<Sys> {
         (part, last): (f64, f64),
         start: Start,
         step: &mut StepView<'_, Sys, Step>,
-    ) -> bool {
+    ) -> Result<bool, Outcome> {
         let Some(slope) = start.slope else {
-            return false;
+            return Ok(false);
         };
         if slope.is_nan() && is_approached_behind_start(surface, step) {
-            return false;
+            return Ok(false);
         }
-        if part == 0.0 {
-            return true;
+        if part == 0.0 || (slope <= 0.0 && is_accelerated(surface, step)?) {
+            return Ok(true);
         }
         // A rate that raises the gap by no more than its rounding error may itself be one.
         let rise = slope * part;
         if rise > FAINT * last.abs() {
-            return false;
+            return Ok(false);
         }
         let rounding = self.rounding_at(surface, part, step);
         if rise > rounding {
-            return false;
+            return Ok(false);
         }
         // The gap may have risen by its curvature.
         step.counters.enclosures += 1;
@@ -405,7 +405,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = step
             .system
             .gap_along(surface, path.time_model(part), &component);
-        gap.range().hi <= FLAT * rounding
+        Ok(gap.range().hi <= FLAT * rounding)
     }
 
     /// Place of an impact and the gap rate there; `None` if the surface is not approached.
@@ -473,18 +473,6 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(falls.then_some(slope))
     }
 
-    /// The largest magnitudes of the components up to this fraction of the step: the motion behind a hit does not take
-    /// place.
-    fn sizes_until(&mut self, part: f64) -> Sys::State {
-        self.path.enclose();
-        let mut sizes = self.sizes_at_start;
-        for (i, size) in sizes.as_mut_slice().iter_mut().enumerate() {
-            let range = self.path.component(i, [0.0, part]).range();
-            *size = size.abs().max(range.magnitude());
-        }
-        sizes
-    }
-
     /// Absolute change of the gap rate per unit of time near a hit at `part` with gap rate `rate`, on the way to where the
     /// rate vanishes or doubles. The `secant` to an end of the step is far larger if the gap is steep there.
     fn bend_near<Step: Stepper<Sys>>(
@@ -544,7 +532,7 @@ impl<Sys: Impacting> Watch<Sys> {
         if rate.abs() <= slow * ends[0].abs().max(ends[1].abs()) {
             self.bends.as_mut_slice()[surface] =
                 self.bend_near(surface, part, (rate, secant), step)?;
-            let sizes = self.sizes_until(part);
+            let sizes = *Sizes::Until(part, self.sizes_at_start).along(&mut self.path);
             let mut evaluations = 0;
             let rounding = rounding_along(surface, step, part, &sizes, &mut evaluations);
             if self.is_slow(surface, rate, || rounding) {

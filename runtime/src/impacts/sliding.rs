@@ -31,6 +31,9 @@ use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
 
+/// Rounding error of the rate of the sliding motion, as a fraction of its terms.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// Two transitions that lead into each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Slide {
@@ -141,7 +144,12 @@ impl Slide {
         let share = rates[0] / (rates[0] + rates[1]);
         let pairs = here.as_slice().iter().zip(other.as_slice());
         for (rate, (here, other)) in rate.as_mut_slice().iter_mut().zip(pairs) {
-            *rate += share * (other - here);
+            let (alone, push) = (*rate, share * (other - here));
+            *rate += push;
+            // Across the surface the rates cancel. What is left by rounding would limit the steps.
+            if rate.abs() <= ROUNDING * alone.abs() {
+                *rate = 0.0;
+            }
         }
         Ok(())
     }
