@@ -60,6 +60,41 @@ const PITCHFORK: &str = "
         initial { x = 0.7; until = 10; }
     }";
 
+/// The Henon map. Its fixed point has a flip at `a = 3 (1 - b)^2/4` and a fold at `a = -(1 - b)^2/4`.
+const HENON: &str = "
+    Henon {
+        coordinates { x; y; tau; }
+        parameters { a = 0.2; b = 0.3; }
+        field { dot(x) = 0; dot(y) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = 1 - a*x^2 + y; y = b*x; tau = 0; }; }
+        initial { x = 0.8; y = 0.2; until = 10; }
+    }";
+
+/// A linear map with the multipliers `+-i k (1 + sqrt(2))` and `+-i k (sqrt(2) - 1)`.
+const LINEAR: &str = "
+    Linear {
+        coordinates { x; y; z; w; tau; }
+        parameters { k = 0.3; }
+        field { dot(x) = 0; dot(y) = 0; dot(z) = 0; dot(w) = 0; dot(tau) = 1; }
+        impacts {
+            tick: tau <= 1 => reset {
+                tau = 0; x = k*(2*y + z); y = -k*(2*x + w); z = -k*x; w = k*y;
+            };
+        }
+        initial { x = 0.1; until = 10; }
+    }";
+
+/// Circles of radius `sqrt(r/c)` around an equilibrium, which they reach at `r = 0`.
+const HOPF: &str = "
+    Hopf {
+        coordinates { x; y; }
+        parameters { r = 0.5; c = 1; }
+        let growth = r - c*(x^2 + y^2);
+        field { dot(x) = x*growth - y; dot(y) = y*growth + x; }
+        impacts { line: y >= 0 => reset { }; }
+        initial { x = -0.7; y = 0.001; until = 50; }
+    }";
+
 /// A motion that rises by `r` and falls between two ticks, below a ceiling at height 1.
 const ARC: &str = "
     Arc {
@@ -154,6 +189,59 @@ fn a_flip_and_a_crossing_of_the_logistic_map() {
         assert_eq!(stabilities[index], expected, "{r}");
     }
     assert_eq!(numbers_of(&table, "period"), vec![1.0; points.len()]);
+}
+
+#[test]
+fn multipliers_at_bifurcations_lie_on_the_circle_to_rounding() {
+    for (index, b) in [-0.5, -0.066, 0.066, 0.3, 0.35, 0.6]
+        .into_iter()
+        .enumerate()
+    {
+        let square = f64::powi(1.0 - b, 2);
+        // The steps of the continuation depend on its range.
+        let to = square * (0.9 + 0.03 * index as f64);
+        let flags = format!(
+            "--surface tick --set b={b} --continue a={}..{to}",
+            -0.3 * square
+        );
+        let table = rows(HENON, &flags);
+        let flips: Vec<f64> = bifurcations(&table, "a")
+            .into_iter()
+            .filter(|(kind, _)| kind == "flip")
+            .map(|(_, a)| a)
+            .collect();
+        assert_eq!(flips.len(), 1, "{flips:?}");
+        assert_near(flips[0], 0.75 * square, 1e-13);
+    }
+    let table = rows(LINEAR, "--surface tick --continue k=0.1..0.8");
+    let expected = [("neimark_sacker", 2f64.sqrt() - 1.0)];
+    assert_bifurcations(&table, "k", &expected, 1e-13);
+}
+
+/// Neighbouring points of an equilibrium close to rounding, and are no orbits.
+#[test]
+fn a_branch_ends_where_its_orbit_becomes_an_equilibrium() {
+    for (c, start) in [
+        (1.0, "0.5"),
+        (-1.0, "-0.5"),
+        (25.0, "0.3"),
+        (-0.04, "-0.02"),
+    ] {
+        let flags =
+            format!("--surface line --set r={start},c={c} --initial x=-0.7 --continue r=-1..1");
+        let document = follow(HOPF, &format!("{flags} --json -")).json();
+        let ends = document["ends"].as_array().unwrap();
+        let end = &ends[usize::from(c < 0.0)];
+        assert_eq!(end["kind"], "equilibrium", "{document}");
+        let place = end["reason"].as_str().unwrap().rsplit(' ').next().unwrap();
+        assert_near(place.parse().unwrap(), 0.0, 1e-9);
+        assert_eq!(document["bifurcations"].as_array().unwrap().len(), 0);
+        for point in document["points"].as_array().unwrap() {
+            let r = point["parameter"].as_f64().unwrap();
+            let x = point["before"]["q"][0].as_f64().unwrap();
+            assert_near(c * x * x / r, 1.0, 1e-6);
+        }
+    }
 }
 
 #[test]

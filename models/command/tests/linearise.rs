@@ -262,6 +262,23 @@ fn an_equilibrium_keeps_the_levels_of_constraints() {
 }
 
 /// `Phi` and `Gamma` of an oscillator in closed form.
+/// A free charge in the field `(2, 1, 1)`: the velocity turns at the rate `sqrt(6)`. The diagonal of the matrix is 0.
+#[test]
+fn a_matrix_without_a_diagonal_has_eigenvalues() {
+    let charge = "
+        Charge {
+            coordinates { x; y; z; }
+            lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 + x*dot(y) + 2*y*dot(z) + z*dot(x);
+        }";
+    let found = document(charge, "-");
+    let eigenvalues = found["eigenvalues"].as_array().expect("eigenvalues");
+    let imaginary = |it: &Value| it[1].as_f64().expect("a number").abs();
+    let turning = eigenvalues
+        .iter()
+        .filter(|it| (imaginary(it) - 6f64.sqrt()).abs() < 1e-14);
+    assert_eq!((turning.count(), eigenvalues.len()), (2, 6));
+}
+
 #[test]
 fn a_sampled_oscillator_has_its_exact_matrices() {
     let found = document(SPRING, "- --input u=0.3 --every 0.9 --samples 3");

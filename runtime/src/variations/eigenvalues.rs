@@ -6,7 +6,7 @@ use crate::math;
 use crate::state::StateVector;
 
 /// Maximum number of steps per eigenvalue.
-const STEPS: usize = 60;
+const STEPS: usize = 300;
 
 /// Number of steps without convergence after which an exceptional shift is used.
 const PATIENCE: usize = 10;
@@ -77,14 +77,19 @@ impl<S: StateVector> Square<'_, S> {
     /// Replaces `A` by `H A H`, with the Householder reflection `H` of the rows from `first` on that maps `x` to a
     /// multiple of the first unit vector.
     fn reflect(&mut self, first: usize, x: &[f64]) {
-        let norm = math::sqrt(x.iter().map(|component| component * component).sum());
-        if norm == 0.0 {
+        let size = x
+            .iter()
+            .fold(0.0, |most, entry| math::larger(most, entry.abs()));
+        if size == 0.0 {
             return;
         }
+        // The squares of small components would be 0.
+        let unit = |i: usize| x[i] / size;
+        let norm = math::sqrt((0..x.len()).map(|i| unit(i) * unit(i)).sum());
         // `H = 1 - 2 v v^T / v^T v` with `v = x + sign(x_0) |x| e_0`.
-        let lead = x[0] + norm.copysign(x[0]);
-        let v = |i: usize| if i == 0 { lead } else { x[i] };
-        let factor = 1.0 / (norm * (norm + x[0].abs()));
+        let lead = unit(0) + norm.copysign(x[0]);
+        let v = |i: usize| if i == 0 { lead } else { unit(i) };
+        let factor = 1.0 / (norm * (norm + unit(0).abs()));
         for column in 0..self.size {
             let sum: f64 = (0..x.len())
                 .map(|i| v(i) * self.at(first + i, column))
@@ -113,11 +118,14 @@ impl<S: StateVector> Square<'_, S> {
     }
 
     /// First row of the unreduced block that ends before row `end`. Sets the negligible subdiagonal entry before it to
-    /// 0.
-    fn start_of_block(&mut self, end: usize) -> usize {
+    /// 0. An entry is negligible beside its neighbours on the diagonal, or beside `size`.
+    ///
+    /// NOTE: the diagonal of a skew-symmetric matrix is 0 up to rounding, and shows no size.
+    fn start_of_block(&mut self, end: usize, size: f64) -> usize {
         let mut start = end - 1;
         while start > 0 {
-            let size = self.at(start - 1, start - 1).abs() + self.at(start, start).abs();
+            let neighbours = self.at(start - 1, start - 1).abs() + self.at(start, start).abs();
+            let size = math::larger(neighbours, size);
             if self.at(start, start - 1).abs() <= f64::EPSILON * size {
                 *self.entry(start, start - 1) = 0.0;
                 break;
@@ -125,6 +133,14 @@ impl<S: StateVector> Square<'_, S> {
             start -= 1;
         }
         start
+    }
+
+    /// Bound of the norm of the block before row and column `end`.
+    fn size(&self, end: usize) -> f64 {
+        let columns = self.columns[..end].iter();
+        let entries = columns.flat_map(|column| &column.as_slice()[..end]);
+        let largest = entries.fold(0.0, |most, entry| math::larger(most, entry.abs()));
+        end as f64 * largest
     }
 
     /// One double-shift step on a block of at least three rows.
@@ -181,7 +197,12 @@ pub fn eigenvalues<S: StateVector>(columns: &mut [S], size: usize) -> Option<Mul
     matrix.reduce();
     let (mut end, mut steps) = (size, 0);
     while end > 0 {
-        let start = matrix.start_of_block(end);
+        let size = if steps < PATIENCE {
+            0.0
+        } else {
+            matrix.size(end)
+        };
+        let start = matrix.start_of_block(end, size);
         match end - start {
             1 => found.add([matrix.at(start, start), 0.0]),
             2 => matrix
@@ -251,6 +272,38 @@ mod tests {
             let near =
                 |found: [f64; 2]| (found[0] - root[0]).abs() + (found[1] - root[1]).abs() < 1e-14;
             assert!(found.iter().any(near), "{found:?}");
+        }
+    }
+
+    /// The eigenvalues of `W v = w x v` are 0 and `+-i |w|`. Those of a skew-symmetric matrix are imaginary, and half the
+    /// sum of their squares is the sum over the entries above the diagonal.
+    #[test]
+    fn skew_symmetric_matrices_have_imaginary_eigenvalues() {
+        let entries = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 0.1];
+        let at = |index: usize| entries[index % 8];
+        for index in 0..512 {
+            let [x, y, z] = [at(index), at(index / 8), at(index / 64)];
+            let w = math::sqrt(x * x + y * y + z * z);
+            let rows = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+            check(rows, [[0.0, w], [0.0, -w], [0.0, 0.0]], 1e-14);
+        }
+        for index in 0..4096 {
+            let [a, b, c, d] = [index, index / 8, index / 64, index / 512].map(at);
+            let rows = [
+                [0.0, a, b, c],
+                [-a, 0.0, d, b],
+                [-b, -d, 0.0, a],
+                [-c, -b, -a, 0.0],
+            ];
+            let mut columns = rows.map(|row| -SVector::<f64, 4>::from(row));
+            let found = eigenvalues(&mut columns, 4).unwrap_or_else(|| panic!("{rows:?}"));
+            let expected = 2.0 * (2.0 * (a * a + b * b) + c * c + d * d);
+            let squares: f64 = found.iter().map(|[_, im]| im * im).sum();
+            assert!(
+                (squares - expected).abs() < 1e-13 * (1.0 + expected),
+                "{rows:?}"
+            );
+            assert!(found.iter().all(|[re, _]| re.abs() < 1e-14), "{rows:?}");
         }
     }
 

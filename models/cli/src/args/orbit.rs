@@ -22,7 +22,7 @@ the directions of the symmetries; the conserved momentum of a symmetry gives a m
 --continue follows the orbit over a parameter by pseudo-arclength continuation, through folds, to both ends of \
 the range. If the model's value of the parameter lies outside of the range, the orbit is followed to the nearest \
 end first. Derivatives with respect to the state and the parameter are exact across impacts. Bifurcations are \
-located to rounding:
+located to nine digits:
 
   fold            the branch turns back; a multiplier is 1
   flip            a multiplier is -1; orbits of twice the period branch off

@@ -58,6 +58,8 @@ pub(crate) struct Local {
     pub arrivals: Vec<f64>,
     /// Least rate at which the gap of each surface falls at an arrival.
     pub speeds: Vec<f64>,
+    /// Length of the rate of the state at the point, in these units.
+    pub pace: f64,
 }
 
 /// The unknowns of Newton's method.

@@ -15,7 +15,7 @@ pub(crate) struct Precision {
     /// Bound for the ends of a step. Smaller factors of test functions count as 0 along the whole step and are left
     /// out, for example factors of conserved quantities.
     always: f64,
-    /// Bound for members between the ends, where a factor that changes sign may be small.
+    /// Bound for a single member, where a factor that changes sign along the branch may be small.
     within: f64,
     /// Largest distance of a multiplier or of the direction from its exact value, at an accepted bifurcation.
     near: f64,
@@ -101,14 +101,31 @@ impl Test {
         Ok(changes.then_some(values))
     }
 
-    /// The value at a member between the ends of a step.
-    pub fn value(self, node: &Node, width: f64, precision: Precision) -> f64 {
-        self.value_above(precision.within, node, width)
+    /// Number of factors that are 0 along the whole step, for example those of conserved quantities.
+    pub fn constant(self, ends: [&Node; 2], precision: Precision) -> usize {
+        let is_zero = |factor: &[f64; 2]| modulus(factor) < precision.always;
+        let counts = ends.map(|node| self.factors(node).iter().filter(|it| is_zero(it)).count());
+        counts[0].min(counts[1])
+    }
+
+    /// The value at a member between the ends of a step, without this number of its smallest factors.
+    pub fn value(self, node: &Node, width: f64, constant: usize) -> f64 {
+        self.value_of(node, width, |factors| {
+            factors.sort_by(|one, other| modulus(one).total_cmp(&modulus(other)));
+            factors.drain(..constant.min(factors.len()));
+        })
     }
 
     /// The value at a member, without factors below `least`.
     fn value_above(self, least: f64, node: &Node, width: f64) -> f64 {
-        let multipliers = &node.local.member.multipliers;
+        self.value_of(node, width, |factors| {
+            let is_small = |factor: &[f64; 2]| modulus(factor) < least;
+            factors.retain(|factor| !is_small(factor));
+        })
+    }
+
+    /// The value at a member, with the factors that `choose` leaves.
+    fn value_of(self, node: &Node, width: f64, choose: impl Fn(&mut Vec<[f64; 2]>)) -> f64 {
         match self {
             Self::Rise => node.rise(),
             Self::Crossing => {
@@ -118,12 +135,23 @@ impl Test {
                 }
                 determinant(columns)
             }
-            Self::Flip => signed(least, multipliers.iter().map(|&[re, im]| [re + 1.0, im])),
-            Self::Circle => {
-                let products =
-                    pairs(multipliers).map(|[[a, b], [c, d]]| [a * c - b * d - 1.0, a * d + b * c]);
-                signed(least, products)
+            Self::Flip | Self::Circle => {
+                let mut factors = self.factors(node);
+                choose(&mut factors);
+                signed(&factors)
             }
+        }
+    }
+
+    /// The factors of a product over multipliers.
+    fn factors(self, node: &Node) -> Vec<[f64; 2]> {
+        let multipliers = &node.local.member.multipliers;
+        match self {
+            Self::Rise | Self::Crossing => Vec::new(),
+            Self::Flip => multipliers.iter().map(|&[re, im]| [re + 1.0, im]).collect(),
+            Self::Circle => pairs(multipliers)
+                .map(|[[a, b], [c, d]]| [a * c - b * d - 1.0, a * d + b * c])
+                .collect(),
         }
     }
 
@@ -145,7 +173,7 @@ impl Test {
 /// True if a member counts as a bifurcation, or belongs to a family at a constant parameter.
 pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: Precision) -> bool {
     let is_zero = |test: &Test| {
-        let value = test.value(node, width, precision);
+        let value = test.value_above(precision.within, node, width);
         value.abs() < precision.on_circle && test.is_met(node, precision)
     };
     node.dimension > 1 || tests.iter().any(is_zero)
@@ -162,16 +190,16 @@ fn pairs(multipliers: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
 }
 
 /// The sign of the product of the factors, times their least modulus. The factors are real or come in conjugate pairs.
-/// Factors with a modulus below `least` are left out.
-fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
-    factors.fold(f64::INFINITY, |value, [re, im]| {
-        let modulus = f64::hypot(re, im);
-        if modulus < least {
-            return value;
-        }
+fn signed(factors: &[[f64; 2]]) -> f64 {
+    factors.iter().fold(f64::INFINITY, |value, factor| {
+        let [re, im] = *factor;
         let sign = if im == 0.0 && re < 0.0 { -1.0 } else { 1.0 };
-        sign * value.signum() * -larger(-value.abs(), -modulus)
+        sign * value.signum() * -larger(-value.abs(), -modulus(factor))
     })
+}
+
+fn modulus(&[re, im]: &[f64; 2]) -> f64 {
+    f64::hypot(re, im)
 }
 
 /// Number of multipliers outside the unit circle by more than a margin.

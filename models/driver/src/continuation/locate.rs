@@ -56,7 +56,11 @@ impl Tracer<'_, '_> {
             if length > REFINED {
                 return Err(Failure::TooLong);
             }
-            located.extend(self.together([node, next], length)?);
+            // One multiplier that crosses alone changes a sign. Without a change it only comes close to the circle, as where
+            // an orbit shrinks to an equilibrium.
+            if before.abs_diff(after) > passed + 1 {
+                located.extend(self.together([node, next], length)?);
+            }
         }
         let is_crossing =
             |located: &Located| located.member.bifurcation == Some(Bifurcation::BranchPoint);
@@ -81,6 +85,7 @@ impl Tracer<'_, '_> {
         values: [f64; 2],
         length: f64,
     ) -> Result<Option<Located>, Failure> {
+        let constant = test.constant([node, next], self.precision);
         let mut bracket = Bracket::new(values);
         let (mut fraction, mut best) = (1.0, next.clone());
         for _ in 0..ZOOM {
@@ -91,7 +96,7 @@ impl Tracer<'_, '_> {
                 // Near a crossing, members of the other branch may be closer.
                 Err(_) => break,
             };
-            let value = test.value(&best, self.width, self.precision);
+            let value = test.value(&best, self.width, constant);
             if value.is_nan() {
                 return Err(Failure::NotKnown);
             }
@@ -192,7 +197,7 @@ impl Tracer<'_, '_> {
     fn root(&self, sides: &[Node]) -> f64 {
         let values = sides
             .iter()
-            .map(|side| Test::Crossing.value(side, self.width, self.precision));
+            .map(|side| Test::Crossing.value(side, self.width, 0));
         let values: Vec<f64> = values.collect();
         let at = |place: f64| interpolated(place, |k| values[k]);
         let mut bracket = Bracket::new([at(-1.0), at(1.0)]);

@@ -34,7 +34,7 @@ pub struct Extent {
 
 impl Extent {
     /// The length of the range, the unit of the parameter.
-    pub(crate) fn width(&self) -> f64 {
+    pub fn width(&self) -> f64 {
         (self.range[1] - self.range[0]).abs()
     }
 
@@ -163,6 +163,11 @@ pub enum BranchEnd {
         /// The surface.
         surface: usize,
     },
+    /// The orbit shrinks to an equilibrium: a Hopf bifurcation.
+    Equilibrium {
+        /// The value of the parameter at the equilibrium, extrapolated.
+        parameter: f64,
+    },
     /// The branch has returned to its first point.
     Closed,
     /// The declaration of the parameter refuses the next value.
@@ -183,9 +188,10 @@ pub enum BranchEnd {
 
 impl BranchEnd {
     /// All kinds.
-    pub const KINDS: [&'static str; 10] = [
+    pub const KINDS: [&'static str; 11] = [
         "range",
         "grazing",
+        "equilibrium",
         "closed",
         "parameter",
         "missed",
@@ -201,6 +207,7 @@ impl BranchEnd {
         match self {
             Self::Range => "range",
             Self::Grazing { .. } => "grazing",
+            Self::Equilibrium { .. } => "equilibrium",
             Self::Closed => "closed",
             Self::Parameter(_) => "parameter",
             Self::Missed(_) => "missed",
@@ -229,6 +236,7 @@ mod tests {
         let ends = [
             BranchEnd::Range,
             BranchEnd::Grazing { surface: 0 },
+            BranchEnd::Equilibrium { parameter: 0.0 },
             BranchEnd::Closed,
             BranchEnd::Parameter(error),
             BranchEnd::Missed(OrbitError::DependsOnTime),

@@ -9,6 +9,7 @@ use dalembert::{Instance, OrbitError, Scene, StateVector};
 use super::Member;
 use super::family::{Failure, Family, Local};
 use super::indicator::{Precision, stability};
+use crate::linear::norm;
 use crate::model::point;
 use crate::orbit::{Search, section};
 
@@ -115,6 +116,14 @@ fn local<S: Instance + Variational>(
         column[index] -= 1.0;
     }
     let all = |vector: &S::State| StateVector::as_slice(vector).to_vec();
+    let mut rate = system.zero_state();
+    let moves = system.rate(0.0, &image.point, &mut rate);
+    let parts = rate.as_slice().iter().zip(image.scale.as_slice());
+    let pace = norm(
+        &parts
+            .map(|(rate, scale)| rate / scale)
+            .collect::<Vec<f64>>(),
+    );
     Ok(Local {
         member: Member {
             parameter,
@@ -138,5 +147,6 @@ fn local<S: Instance + Variational>(
         is_closed: image.is_closed,
         arrivals: image.itinerary.arrivals.as_slice().to_vec(),
         speeds: image.itinerary.speeds.as_slice().to_vec(),
+        pace: moves.map_or(f64::NAN, |()| pace),
     })
 }

@@ -39,6 +39,15 @@ const NEWTON: usize = 12;
 /// A branch ends at a grazing orbit if the speed of an arrival, extrapolated linearly, is 0 within this distance.
 const GRAZING: f64 = 1e-5;
 
+/// Fraction of the largest rate of the state at which an orbit with a multiplier within `AT_REST[1]` of 1 counts as about to
+/// become an equilibrium.
+///
+/// NOTE: closer to the equilibrium, any neighbouring point closes within the rounding of the return map.
+const AT_REST: [f64; 2] = [1e-3, 1e-2];
+
+/// Largest decrease of the rate of the state in a step, as a factor.
+const SLOWER: f64 = 0.25;
+
 /// Points within this distance of an end inside the range, along the branch, are left out.
 const CROWDED: f64 = 1e-3;
 
@@ -240,9 +249,16 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let mut before = start.clone();
         let (mut length, mut made) = (FIRST, 0);
         let mut failures = Vec::new();
+        let mut fastest = 0.0;
         while made < self.points {
             if self.leaves(&node, limits) {
                 return BranchEnd::Range;
+            }
+            fastest = f64::max(fastest, node.local.pace);
+            if is_at_rest(&node.local, fastest) {
+                return BranchEnd::Equilibrium {
+                    parameter: rest(&before, &node),
+                };
             }
             let (next, located) = match self.stride(&node, length, limits) {
                 Ok(made) => made,
@@ -350,6 +366,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
             }
         };
         let next = self.inside(node, next, length)?;
+        if next.local.pace < SLOWER * node.local.pace {
+            return Err(Failure::TooLong);
+        }
         let located = self.bifurcations(node, &next, length)?;
         Ok((next, located))
     }
@@ -490,6 +509,27 @@ pub(super) const fn ended(failure: &Failure) -> BranchEnd {
         Failure::NotKnown => BranchEnd::NotKnown,
         Failure::Real => BranchEnd::Resonance,
         Failure::Diverged | Failure::Itinerary(_) | Failure::TooLong => BranchEnd::NotConverged,
+    }
+}
+
+/// True if an orbit is about to become an equilibrium. The rate of the state also vanishes where an orbit comes to pass a
+/// saddle point, but then no multiplier tends to 1.
+fn is_at_rest(local: &Local, fastest: f64) -> bool {
+    let [part, near] = AT_REST;
+    let mut multipliers = local.member.multipliers.iter();
+    local.pace < part * fastest && multipliers.any(|&[re, im]| f64::hypot(re - 1.0, im) < near)
+}
+
+/// The parameter at which the square of the rate of the state, extrapolated linearly, is 0. The square of the size of an
+/// orbit is proportional to the distance from a Hopf bifurcation.
+fn rest(before: &Node, last: &Node) -> f64 {
+    let squares = [before, last].map(|node| node.local.pace * node.local.pace);
+    let way = last.parameter() - before.parameter();
+    let rest = last.parameter() + way * squares[1] / (squares[0] - squares[1]);
+    if rest.is_finite() {
+        rest
+    } else {
+        last.parameter()
     }
 }
 

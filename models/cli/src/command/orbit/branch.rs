@@ -243,6 +243,17 @@ fn reason(followed: &Followed<'_>, end: &BranchEnd) -> String {
             let name = names::surfaces(description).nth(*surface);
             format!("the orbit grazes `{}`", name.unwrap_or_default())
         }
+        BranchEnd::Equilibrium { parameter } => {
+            // The extrapolated value has nine digits of the range.
+            let digits = 9.0 - followed.request.extent.width().log10().floor();
+            let digits = digits.clamp(0.0, 300.0) as usize;
+            let is_zero = parameter.abs() < 0.5 * 0.1_f64.powi(digits as i32);
+            let parameter = if is_zero { 0.0 } else { *parameter };
+            let name = followed.name();
+            format!(
+                "the orbit shrinks to an equilibrium: a Hopf bifurcation at {name} = {parameter:.digits$}"
+            )
+        }
         BranchEnd::Closed => "the branch is closed".to_owned(),
         BranchEnd::Parameter(error) => error.to_string(),
         BranchEnd::Missed(error) => {
