@@ -379,6 +379,18 @@ fn motions_through_a_focus_are_one_family() {
     assert_near(number(&found[0]["action"]), 2.0, 1e-12);
 }
 
+/// After half a period, every motion of an oscillator is at the opposite place. The actions of all are 0.
+#[test]
+fn motions_to_a_conjugate_end_are_one_family() {
+    let oscillator = "Oscillator { coordinates { x; } lagrangian = (dot(x)^2 - x^2)/2; }";
+    let line = "- --from x=1 --to x=-1 --time 3.141592653589793";
+    let found = motions_on(oscillator, line);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(number(&found[0]["family"]) > 10.0);
+    let told = connect_on(oscillator, line).output;
+    assert!(told.contains("conjugate the end"), "{told}");
+}
+
 #[test]
 fn a_disk_that_rolls_is_steered_to_a_point_and_simulated_there() {
     let line = "rolling_disk --from x=0,y=0 --to x=0.05,y=0.02 --time 1 --energy 1e-5 --starts 8";

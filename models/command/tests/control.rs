@@ -70,6 +70,28 @@ const WEIGHTED: &str = "
         initial { x = 1; until = 1; }
     }";
 
+/// Linear equations with a quadratic cost, which have one extremal. In the scalar one it is `p = P x` with
+/// `P = tanh(w t)/(w - a tanh(w t))`, `w^2 = a^2 + 1`, and the time `t` that is left; the cost is `P x^2/2`.
+const SCALAR: &str = "
+    Scalar {
+        coordinates { x; }
+        parameters { a = 1; }
+        inputs { u; }
+        cost { running = (x^2 + u^2)/2; }
+        field { dot(x) = a*x + u; }
+        initial { x = 1; }
+    }";
+
+/// A cart that an input pushes.
+const CART: &str = "
+    Cart {
+        coordinates { x; v; }
+        inputs { u; }
+        cost { running = (x^2 + u^2)/2; }
+        field { dot(x) = v; dot(v) = u; }
+        initial { x = 1; v = 1/2; }
+    }";
+
 /// The extremals of a document, by cost.
 fn extremals_on(input: &str, line: &str) -> Vec<Value> {
     let done = run_on(input, &format!("control {line} --json -"));
@@ -484,6 +506,26 @@ fn tables_and_pictures_are_written() {
     let svg = std::fs::read_to_string(&path).unwrap();
     std::fs::remove_file(&path).unwrap();
     assert!(svg.contains("controlled_ball") && svg.contains("2 impacts"));
+}
+
+#[test]
+fn linear_equations_with_a_quadratic_cost_have_one_extremal() {
+    for time in [1e-6, 1e-3, 0.1, 1.0, 5.0] {
+        for a in [-2.0_f64, 0.5, 1.0] {
+            let found = extremals_on(SCALAR, &format!("- --set a={a} --until {time}"));
+            assert_eq!(found.len(), 1, "a = {a}, t = {time}");
+            let w = a.hypot(1.0);
+            let p = (w * time).tanh() / (w - a * (w * time).tanh());
+            assert_near(number(&found[0]["cost"]), p / 2.0, 1e-10 * p);
+            assert_near(number(&found[0]["start"]["costate"]["x"]), p, 1e-10 * p);
+        }
+        let found = extremals_on(CART, &format!("- --until {time}"));
+        assert_eq!(found.len(), 1, "t = {time}");
+    }
+    // Rounding of the costate grows by exp(20 sqrt(2)) for the first, and by exp(20/sqrt(2)) for the second.
+    let far = run_on(SCALAR, "control - --until 20");
+    assert!(far.output.contains("no extremal") && far.output.contains("use a shorter --until"));
+    assert_eq!(extremals_on(CART, "- --until 20").len(), 1);
 }
 
 #[test]

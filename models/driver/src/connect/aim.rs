@@ -21,6 +21,18 @@ pub(crate) struct Shot {
     pub misses: Vec<f64>,
     /// Derivatives of the misses, one column per unknown; empty if they were not requested or do not exist.
     pub slopes: Vec<Vec<f64>>,
+    /// Size of the misses that rounding alone may cause. Known only with the derivatives, else 0.
+    pub rounding: f64,
+}
+
+/// Largest miss of a root, whatever the rounding.
+pub(crate) const COARSE: f64 = 1e-6;
+
+impl Shot {
+    /// Largest miss of a root: `near`, or what rounding alone may cause, up to [`COARSE`].
+    pub fn near(&self, near: f64) -> f64 {
+        near.max(self.rounding.min(COARSE))
+    }
 }
 
 /// A boundary-value problem as a search sees it, for any type of system.

@@ -16,6 +16,8 @@ struct Place {
     w: f64,
     miss: f64,
     slope: f64,
+    /// Largest miss of a root.
+    near: f64,
 }
 
 /// Finds the starts with miss 0 in one equation, on a stretch of starts with one sequence of impacts. `unit` is the
@@ -79,7 +81,12 @@ impl Line<'_> {
         let miss = *shot.misses.get(self.equation)?;
         let slope = *shot.slopes.first()?.get(self.equation)?;
         let is_usable = shot.course == *self.course && miss.is_finite() && slope.is_finite();
-        is_usable.then_some(Place { w, miss, slope })
+        is_usable.then_some(Place {
+            w,
+            miss,
+            slope,
+            near: shot.near(self.near),
+        })
     }
 
     /// Adds the roots after `left` up to `right`.
@@ -177,7 +184,7 @@ impl Line<'_> {
     }
 
     fn keep(&mut self, place: Place) {
-        if place.miss.abs() <= self.near {
+        if place.miss.abs() <= place.near {
             self.roots.push(place.w);
         }
     }
@@ -210,6 +217,7 @@ mod tests {
                 course: Course::Reached(Vec::new()),
                 misses: vec![miss],
                 slopes: vec![vec![slope]],
+                rounding: 0.0,
             }
         }
     }

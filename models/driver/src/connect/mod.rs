@@ -258,7 +258,7 @@ impl VariationalVisitor for Joiner<'_, '_> {
         let connected = connections.map(|mut connections| {
             connections.sort_by(in_order);
             Connected {
-                connections: families(connections),
+                connections: families(connections, self.boundary.time),
                 envelope,
                 unknowns: shooter.unknowns(),
                 directions: found.directions,
@@ -274,10 +274,13 @@ impl VariationalVisitor for Joiner<'_, '_> {
 }
 
 /// Keeps one motion of each family of motions that are not isolated.
-fn families(connections: Vec<Connection>) -> Vec<Connection> {
+fn families(connections: Vec<Connection>, time: f64) -> Vec<Connection> {
     let mut kept: Vec<Connection> = Vec::new();
     for connection in connections {
-        match kept.iter_mut().find(|it| are_one_family(it, &connection)) {
+        match kept
+            .iter_mut()
+            .find(|it| are_one_family(it, &connection, time))
+        {
             Some(first) => first.family += 1,
             None => kept.push(connection),
         }
@@ -285,13 +288,21 @@ fn families(connections: Vec<Connection>) -> Vec<Connection> {
     kept
 }
 
-fn are_one_family(left: &Connection, right: &Connection) -> bool {
+fn are_one_family(left: &Connection, right: &Connection, time: f64) -> bool {
     let surfaces = |it: &Connection| it.bounces.iter().map(|it| it.surface).collect::<Vec<_>>();
-    let size = left.action.abs().max(right.action.abs());
+    let size = action_size(left, time).max(action_size(right, time));
     !left.is_isolated
         && !right.is_isolated
         && surfaces(left) == surfaces(right)
         && (left.action - right.action).abs() <= SAME_ACTION * size
+}
+
+/// The size of the terms of an action, which may cancel.
+fn action_size(connection: &Connection, time: f64) -> f64 {
+    let first = &connection.first;
+    let terms = first.p.iter().zip(&first.qdot).map(|(p, rate)| p * rate);
+    let twice_kinetic: f64 = terms.sum();
+    connection.action.abs().max(twice_kinetic.abs() * time)
 }
 
 /// The order of motions: by number of impacts, then by the times of their impacts, then by their start.

@@ -39,6 +39,8 @@ pub(super) struct Newton<'a> {
     pub near: f64,
     /// A typical speed of the problem.
     pub least: f64,
+    /// Largest [`Shot::rounding`] so far.
+    pub rounding: f64,
 }
 
 impl Newton<'_> {
@@ -46,13 +48,13 @@ impl Newton<'_> {
     /// out if `deflated`.
     pub fn search(&mut self, start: &[f64], known: &[Vec<f64>], deflated: bool) -> Arrival {
         let mut y = start.to_vec();
-        let mut shot = self.shoot(&y, true);
+        let mut shot = self.varied(&y);
         for _ in 0..STEPS {
             if shot.course != *self.course || shot.slopes.is_empty() {
                 return Arrival::Nowhere;
             }
             let Some(step) = self.step(&shot) else { break };
-            if self.is_settled(&y, &step) && norm(&shot.misses) <= self.near {
+            if self.is_settled(&y, &step) && self.is_hit(&shot) {
                 return self.finish(y, &step, &shot, known);
             }
             if !deflated && known.iter().any(|root| is_captured(&y, &step, root)) {
@@ -67,9 +69,9 @@ impl Newton<'_> {
                 break;
             };
             y = next;
-            shot = self.shoot(&y, true);
+            shot = self.varied(&y);
         }
-        match norm(&shot.misses) <= self.near && shot.course == *self.course {
+        match self.is_hit(&shot) && shot.course == *self.course {
             true => self.named(y, known),
             false => Arrival::Nowhere,
         }
@@ -93,20 +95,42 @@ impl Newton<'_> {
         }
     }
 
+    /// A motion with its derivatives.
+    fn varied(&mut self, y: &[f64]) -> Shot {
+        let shot = self.shoot(y, true);
+        self.rounding = self.rounding.max(shot.rounding);
+        shot
+    }
+
     fn shoot(&mut self, y: &[f64], with_slopes: bool) -> Shot {
         let w: Vec<f64> = y.iter().zip(self.units).map(|(y, unit)| y * unit).collect();
         self.aim.shoot(&w, with_slopes)
     }
 
-    /// The Newton step, at most as long as the largest speed.
-    fn step(&self, shot: &Shot) -> Option<Vec<f64>> {
+    /// The length of the whole Newton step; 0 if there is none.
+    pub fn length(&self, shot: &Shot) -> f64 {
+        let length = self.whole_step(shot).map_or(0.0, |step| norm(&step));
+        if length.is_finite() { length } else { 0.0 }
+    }
+
+    fn whole_step(&self, shot: &Shot) -> Option<Vec<f64>> {
         let scaled =
             |(column, unit): (&Vec<f64>, &f64)| column.iter().map(|it| it * unit).collect();
         let columns: Vec<Vec<f64>> = shot.slopes.iter().zip(self.units).map(scaled).collect();
         let wanted: Vec<f64> = shot.misses.iter().map(|miss| -miss).collect();
-        let step = solve(&columns, &wanted)?;
+        solve(&columns, &wanted)
+    }
+
+    /// The Newton step, at most as long as the largest speed.
+    fn step(&self, shot: &Shot) -> Option<Vec<f64>> {
+        let step = self.whole_step(shot)?;
         let longest = (self.most / norm(&step)).min(1.0);
         Some(step.iter().map(|it| it * longest).collect())
+    }
+
+    /// True if the motion ends as given, apart from rounding.
+    fn is_hit(&self, shot: &Shot) -> bool {
+        norm(&shot.misses) <= shot.near(self.near)
     }
 
     fn is_settled(&self, y: &[f64], step: &[f64]) -> bool {
@@ -208,6 +232,7 @@ mod tests {
                 course: Course::Reached(Vec::new()),
                 misses: vec![x * x + y * y - 5.0, x * y - 2.0],
                 slopes: vec![vec![2.0 * x, y], vec![2.0 * y, x]],
+                rounding: 0.0,
             }
         }
     }
@@ -223,6 +248,7 @@ mod tests {
             most: 10.0,
             near: 1e-9,
             least: 1.0,
+            rounding: 0.0,
         };
         let mut known: Vec<Vec<f64>> = Vec::new();
         while let Arrival::Root(root) = newton.search(&[2.2, 0.4], &known, !known.is_empty()) {

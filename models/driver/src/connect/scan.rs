@@ -232,6 +232,7 @@ mod tests {
                 },
                 misses: vec![w[0]],
                 slopes: Vec::new(),
+                rounding: 0.0,
             }
         }
     }

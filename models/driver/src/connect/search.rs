@@ -76,6 +76,8 @@ pub(crate) struct Found {
     pub unresolved: usize,
     /// Number of starts whose motion was given up.
     pub given_up: usize,
+    /// Largest miss that rounding alone may cause on the way of Newton's method from unknowns of 0.
+    pub rounding: f64,
 }
 
 /// A start for Newton's method.
@@ -119,6 +121,9 @@ impl<'a> Search<'a> {
 
     /// Runs the search.
     pub fn found(mut self) -> Found {
+        if self.unknowns > 0 {
+            self.start_at_rest();
+        }
         match self.unknowns {
             0 => self.fixed(),
             1 => self.on_a_line(),
@@ -151,16 +156,46 @@ impl<'a> Search<'a> {
         NEAR * self.units.size
     }
 
+    /// True for a motion to the end with enough impacts.
+    fn counts(&self, course: &Course) -> bool {
+        matches!(course, Course::Reached(surfaces) if surfaces.len() >= self.plan.least)
+    }
+
     /// The search without unknowns: there is one motion.
     fn fixed(&mut self) {
         let shot = self.aim.shoot(&[], false);
         let is_near = shot.misses.iter().all(|miss| miss.abs() <= self.near());
-        let counts = |surfaces: &Vec<usize>| surfaces.len() >= self.plan.least;
-        if let Course::Reached(surfaces) = &shot.course
-            && is_near
-            && counts(surfaces)
-        {
+        if is_near && self.counts(&shot.course) {
             self.keep(&[]);
+        }
+    }
+
+    /// Newton's method from unknowns of 0. Where the end depends linearly on the unknowns, its first step leads to the
+    /// only root, however far away.
+    fn start_at_rest(&mut self) {
+        let zeros = vec![0.0; self.unknowns];
+        let shot = self.aim.shoot(&zeros, true);
+        if !self.counts(&shot.course) {
+            return;
+        }
+        let most = self.speeds().most;
+        let (near, least) = (self.near(), self.units.speed);
+        let mut newton = Newton {
+            aim: self.aim,
+            units: &self.units.unknowns,
+            course: &shot.course,
+            most,
+            near,
+            least,
+            rounding: 0.0,
+        };
+        if self.plan.kinetic.is_none() {
+            newton.most = newton.most.max(newton.length(&shot));
+        }
+        let arrival = newton.search(&zeros, &[], false);
+        self.found.rounding = newton.rounding;
+        if let Arrival::Root(y) = arrival {
+            self.keep(&y);
         }
     }
 
@@ -202,7 +237,8 @@ impl<'a> Search<'a> {
         let (roots, unresolved) = line::roots(self.aim, window, unit, near, equation);
         self.found.unresolved += unresolved;
         for w in roots {
-            let shot = self.aim.shoot(&[w], false);
+            let shot = self.aim.shoot(&[w], true);
+            let near = shot.near(near);
             if shot.misses.iter().all(|miss| miss.abs() <= near) {
                 self.keep(&[w / self.units.unknowns[0]]);
             }
@@ -317,8 +353,7 @@ impl<'a> Search<'a> {
                 continue;
             };
             let shot = self.aim.shoot(&w, false);
-            let counts = |it: &Course| matches!(it, Course::Reached(surfaces) if surfaces.len() >= self.plan.least);
-            if counts(&shot.course) {
+            if self.counts(&shot.course) {
                 candidates.push(Candidate {
                     miss: norm(&shot.misses),
                     course: shot.course,
@@ -409,6 +444,7 @@ impl<'a> Search<'a> {
             most,
             near,
             least: self.units.speed,
+            rounding: 0.0,
         };
         let Arrival::Root(y) = newton.search(&candidate.y, known, deflated) else {
             return false;

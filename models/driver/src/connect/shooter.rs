@@ -472,6 +472,7 @@ impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
             course,
             misses: self.given.iter().map(miss).collect(),
             slopes: columns.iter().map(rows).collect(),
+            rounding: 0.0,
         }
     }
 }

@@ -21,6 +21,7 @@ use dalembert::{Fault, Instance, Scene, Tolerance};
 use thiserror::Error;
 
 use crate::connect::Stage;
+use crate::connect::aim::COARSE;
 use crate::connect::search::{Plan, Search};
 use crate::refusal::Refusal;
 use shooter::Shooter;
@@ -108,6 +109,16 @@ pub struct Controlled {
     pub unresolved: usize,
     /// Number of starts whose motion was given up after too many steps.
     pub given_up: usize,
+    /// The miss of the end, relative to its size, that rounding of the costate at the start may cause. It grows
+    /// exponentially with the time.
+    pub rounding: f64,
+}
+
+impl Controlled {
+    /// True if the end is so far away that rounding of the costate at the start hides it.
+    pub fn is_out_of_reach(&self) -> bool {
+        self.rounding > COARSE
+    }
 }
 
 /// Reasons why no extremals are sought.
@@ -172,6 +183,7 @@ impl VariationalVisitor for Controller<'_, '_> {
                 is_bounded: found.is_bounded,
                 unresolved: found.unresolved,
                 given_up: found.given_up,
+                rounding: found.rounding,
             }
         }))
     }

@@ -26,6 +26,9 @@ use crate::typed::vector;
 /// A motion with an impact within this fraction of the time from its start or end is not accepted.
 const AT_ENDS: f64 = 1e-9;
 
+/// Rounding errors of the residuals of a motion, relative to their terms.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// Number of steps after which a motion is given up: a minimum, and a multiple of the steps with costate 0 at the
 /// start.
 const STEPS: [u64; 2] = [4000, 50];
@@ -205,13 +208,15 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         let still = vec![0.0; n];
         let shot = self.shoot(&still, false);
         let suggested = norm(&shot.misses);
+        let speed = match suggested > 0.0 && suggested.is_finite() {
+            true => suggested,
+            false => 1.0,
+        };
         Units {
             unknowns: self.sizes[n..].to_vec(),
-            speed: match suggested > 0.0 && suggested.is_finite() {
-                true => suggested,
-                false => 1.0,
-            },
-            size: 1.0,
+            speed,
+            // A miss that is small beside the misses with costate 0.
+            size: speed.min(1.0),
             has_surfaces: !self.system.description().surfaces.is_empty(),
         }
     }
@@ -389,6 +394,22 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             .collect()
     }
 
+    /// The size of the terms in which the residuals are rounded: the components at the end, and the costate at the start
+    /// times its effect on them. 0 without derivatives.
+    fn rounded(&self, end: &S::State, w: &[f64], slopes: &[Vec<f64>]) -> f64 {
+        if slopes.is_empty() {
+            return 0.0;
+        }
+        let n = self.layout.states;
+        let components = &end.as_slice()[..2 * n];
+        let here = self.task.to.iter().enumerate().map(|(index, to)| match to {
+            Some(_) => components[index] / self.sizes[index],
+            None => components[n + index] / self.sizes[n + index],
+        });
+        let moved = slopes.iter().zip(w).map(|(column, w)| w * norm(column));
+        norm(&here.chain(moved).collect::<Vec<f64>>())
+    }
+
     /// State, costate, optimal inputs and Hamiltonian at a time.
     fn moment(&self, t: f64, state: &S::State) -> Result<Moment, Fault> {
         let n = self.layout.states;
@@ -509,12 +530,15 @@ impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
                 course: flight.course,
                 misses: vec![f64::NAN; self.layout.states],
                 slopes: Vec::new(),
+                rounding: 0.0,
             };
         };
         let columns = flight.columns.iter();
         let columns = columns.map(|column| self.scaled(&self.slopes(column, &values)));
+        let slopes: Vec<Vec<f64>> = columns.collect();
         Shot {
-            slopes: columns.collect(),
+            rounding: ROUNDING * self.rounded(&end, w, &slopes),
+            slopes,
             misses: self.scaled(&self.misses(&end, &values)),
             course: flight.course,
         }

@@ -128,7 +128,7 @@ fn write_motion(
     if !connection.is_isolated {
         let family = match connection.family {
             1 => "no".to_owned(),
-            several => format!("no, one of {several} found with this action"),
+            several => format!("no, one of {several} found in a family of equal action"),
         };
         writeln!(
             output,
@@ -136,7 +136,12 @@ fn write_motion(
         )?;
     }
     if connection.conjugate.is_empty() {
-        return writeln!(output, "    conjugate none");
+        let end = if connection.is_isolated {
+            "none"
+        } else {
+            "the end"
+        };
+        return writeln!(output, "    conjugate {end}");
     }
     connection.conjugate.iter().try_for_each(|conjugate| {
         let q: Vec<Option<f64>> = conjugate.at.q.iter().copied().map(Some).collect();

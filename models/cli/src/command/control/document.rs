@@ -43,6 +43,7 @@ pub(super) fn search(finished: &Finished<'_>) -> Value {
         "bounded": controlled.is_bounded,
         "unresolved": controlled.unresolved,
         "given_up": controlled.given_up,
+        "rounding": number(controlled.rounding),
         "exhaustive": false,
     })
 }

@@ -78,7 +78,13 @@ pub(super) fn counted<'a>(extremals: impl Iterator<Item = &'a Extremal>) -> Stri
 /// Reasons why the search is not exhaustive.
 fn doubt(finished: &Finished<'_>) -> String {
     let controlled = &finished.controlled;
-    let doubts = ends::doubts(controlled.unresolved, controlled.given_up);
+    let mut doubts = ends::doubts(controlled.unresolved, controlled.given_up);
+    if controlled.is_out_of_reach() {
+        let moved = controlled.rounding;
+        doubts += &format!(
+            "; rounding of the costate moves the end by {moved:.0e} of its size: use a shorter --until"
+        );
+    }
     format!("a scan samples costates, so extremals may be missed{doubts}")
 }
 
