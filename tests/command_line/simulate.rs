@@ -176,6 +176,35 @@ fn a_step_that_is_too_long_is_told() {
     assert_eq!(bad.errors, format!("warning: {text}\n"));
 }
 
+/// The tolerance is absolute for coordinates below 1. A micrometre is no small unit of length to a user.
+#[test]
+fn coordinates_that_the_tolerance_exceeds_are_told() {
+    let wall = "
+        Wall {
+            coordinates { x; }
+            parameters { s > 0 = 1; }
+            lagrangian = (dot(x)^2 - x^2)/2;
+            impacts { w: x <= 0.9*s; }
+            initial { dot(x) = s; until = 5; }
+        }";
+    for (size, is_told) in [
+        ("1", false),
+        ("1e-3", false),
+        ("1e-6", true),
+        ("1e-15", true),
+    ] {
+        let set = format!("s={size}");
+        let done = run_on(wall, &["simulate", "-", "--set", &set]);
+        let told = done.errors.contains("warning: no coordinate exceeds 9.0e");
+        assert_eq!(told, is_told, "{size}: {}", done.errors);
+    }
+    let fine = run_on(
+        wall,
+        &["simulate", "-", "--set", "s=1e-6", "--tol", "1e-15"],
+    );
+    assert!(fine.errors.is_empty(), "{}", fine.errors);
+}
+
 /// Work of forces and losses in impacts are no errors of the energy.
 #[test]
 fn work_and_impacts_are_no_errors_of_the_energy() {

@@ -23,11 +23,13 @@ impl Pool {
         self.derivative_of(id, symbol)
     }
 
-    /// `sum over s of (d id / d s) * direction_s`
+    /// `sum over s of (d id / d s) * direction_s`. Directions that are the number 0 add nothing, although their products
+    /// with derivatives that are not defined everywhere would be kept.
     pub fn derivative_along(&mut self, id: ExprId, directions: &[(SymbolId, ExprId)]) -> ExprId {
         let mut summands = Vec::new();
         for (symbol, direction) in directions {
-            if self.depends_on(id, *symbol) {
+            let is_nothing = self.as_number(*direction).is_some_and(Rational::is_zero);
+            if !is_nothing && self.depends_on(id, *symbol) {
                 let partial = self.diff(id, *symbol);
                 summands.push(self.mul(partial, *direction));
             }

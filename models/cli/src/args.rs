@@ -432,7 +432,7 @@ pub struct CourseArgs {
     pub integrator: IntegratorChoice,
     /// Step of an integrator of fixed step. Default: a step that satisfies --tol at the start, but not so short that the
     /// run takes more than about four million steps. The summary prints it.
-    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    #[arg(long, alias = "dt", value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub step: Option<f64>,
     /// Largest step of dop853, dopri5 and taylor. A force that acts for a time shorter than the step may be missed:
     /// choose a largest step below its duration.

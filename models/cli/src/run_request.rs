@@ -169,6 +169,12 @@ pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize,
             Some((surface, law)) => (Some(surface.trim()), law.trim()),
             None => (None, flag.trim()),
         };
+        if let Some((name, rest)) = law.split_once(':')
+            && names::surfaces(description).any(|known| known == name)
+        {
+            let expected = format!("SURFACE=LAW, such as `{name}={rest}`");
+            return Err(CliError::value("--law", law, expected));
+        }
         let law = parse_law(law)?;
         let surface = surface
             .map(|name| names::find("--law", "surface", name, names::surfaces(description)))

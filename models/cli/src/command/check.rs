@@ -10,7 +10,7 @@ use dalembert::{Outcome, Policies};
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_codegen::report::{self, Item, Section};
 use dalembert_driver::{
-    AnyModel, Contact, Form, Impact, Integrator, Origin, Piece, Settings, Watch, words,
+    AnyModel, Contact, Form, Impact, Integrator, Origin, Piece, Settings, Watch, outcome, words,
 };
 use serde_json::{Value, json};
 
@@ -135,8 +135,8 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     checks
 }
 
-/// The defect of this state for a run: a run from it is refused, or a surface has a negative gap. The first step of a run
-/// reports both.
+/// The defect of this state for a run: a run from it is refused, a surface has a negative gap, or a component or a gap has no
+/// value. The first step of a run reports all of them.
 fn defect(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let settings = Settings {
         form: Form::Global,
@@ -156,14 +156,19 @@ fn defect(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
         Ok(ending) => ending,
         Err(refusal) => return Some(refusal_text(description, &refusal)),
     };
-    let Outcome::StartsInside { surface, gap } = ending.outcome else {
-        return None;
-    };
-    let name = names::surfaces(description).nth(surface);
-    let name = name.unwrap_or_default();
-    Some(format!(
-        "it lies behind the surface `{name}`: its gap is {gap}"
-    ))
+    match ending.outcome {
+        Outcome::StartsInside { surface, gap } => {
+            let name = names::surfaces(description).nth(surface);
+            let name = name.unwrap_or_default();
+            Some(format!(
+                "it lies behind the surface `{name}`: its gap is {gap}"
+            ))
+        }
+        outcome @ Outcome::NonFinite { .. } if ending.counters.accepted == 0 => {
+            outcome::explanation(description, &outcome)
+        }
+        _ => None,
+    }
 }
 
 fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {

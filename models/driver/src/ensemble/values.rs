@@ -130,11 +130,18 @@ pub struct Draw {
 }
 
 fn spaced([first, last]: [f64; 2], index: u64, count: u64) -> f64 {
-    match count.saturating_sub(1) {
-        0 => first,
-        // The last value is exact, and equal ends give equal values.
-        gaps if index == gaps => last,
-        gaps => first + (last - first) * (index as f64 / gaps as f64),
+    let gaps = count.saturating_sub(1);
+    // The last value is exact, and equal ends give equal values.
+    match index {
+        _ if gaps == 0 => first,
+        _ if index == gaps => last,
+        _ => {
+            let (part, length) = (index as f64 / gaps as f64, last - first);
+            match length.is_finite() {
+                true => first + length * part,
+                false => first * (1.0 - part) + last * part,
+            }
+        }
     }
 }
 
@@ -163,5 +170,11 @@ mod tests {
             count: 1,
         };
         assert_eq!(one.value(0, NOBODY), 2.0);
+        let wide = Values::Spaced {
+            ends: [-1e308, 1e308],
+            count: 5,
+        };
+        let values: Vec<f64> = (0..5).map(|index| wide.value(index, NOBODY)).collect();
+        assert_eq!(values, [-1e308, -5e307, 0.0, 5e307, 1e308]);
     }
 }

@@ -93,6 +93,7 @@ fn simulate_abreast<M: Model>(
             integrals: Integrals::of(model),
             watch,
             balance: None,
+            reach: None,
         });
     }
     let looks_inside = looks_inside || bridges.iter().any(|bridge| bridge.integrals.is_some());

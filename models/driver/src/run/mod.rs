@@ -22,6 +22,7 @@ use dalembert::integrate::{
     Gauss6, Method, Rk4, Taylor, Tolerance,
 };
 use dalembert::law::Law;
+use dalembert::math::larger;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
     Event, Hold, Instance, Observer, Outcome, Policies, Run, Scene, SceneEffects, Segment,
@@ -146,7 +147,7 @@ pub trait Watch {
     /// Receives the beginning or the end of a contact.
     fn contact(&mut self, contact: Contact);
 
-    /// True if the watch wants warnings about errors of a fixed-step integrator, which cost time.
+    /// True if the watch wants warnings about errors, which cost time.
     fn wants_warnings(&self) -> bool {
         false
     }
@@ -176,7 +177,8 @@ pub(crate) fn simulate<M: Model>(
     settings: &Settings,
     watch: &mut dyn Watch,
 ) -> Result<Ending, Refusal> {
-    let is_doubtful = !settings.integrator.is_adaptive() && watch.wants_warnings();
+    let wants_warnings = watch.wants_warnings();
+    let is_doubtful = !settings.integrator.is_adaptive() && wants_warnings;
     let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
     let mut bridge = Bridge {
         model,
@@ -184,14 +186,42 @@ pub(crate) fn simulate<M: Model>(
         integrals: Integrals::of(model),
         watch,
         balance: balance.flatten(),
+        reach: wants_warnings.then_some(0.0),
     };
+    bridge.follow(&state);
     let first = bridge.point(0.0, &state);
     let solved = solve(model, &state, settings, &mut bridge)?;
     let last = bridge.point(solved.run.t, &solved.run.state);
-    let warnings = warnings(settings, &solved, bridge.balance);
+    let warnings = match settings.integrator.is_adaptive() {
+        true => bridge
+            .reach
+            .and_then(|reach| smallness(settings, reach))
+            .into_iter()
+            .collect(),
+        false => warnings(settings, &solved, bridge.balance),
+    };
     Ok(Ending {
         warnings,
         ..ending([first, last], solved, settings)
+    })
+}
+
+/// Error of a step relative to the coordinates above which a run has a warning.
+const COARSE: f64 = 1e-5;
+
+/// Coordinates below which a body at rest may be by rounding.
+const NOISE: f64 = 1e-20;
+
+/// A warning about coordinates so small that the absolute tolerance is no small part of them. `reach` is the largest absolute
+/// value of a coordinate in the run.
+fn smallness(settings: &Settings, reach: f64) -> Option<String> {
+    let part = settings.tol / reach;
+    (reach > NOISE && part > COARSE).then(|| {
+        format!(
+            "no coordinate exceeds {reach:.1e}, and --tol {:e} is absolute below 1: a step may have errors of {part:.0e} of the \
+             coordinates; use smaller units, or a smaller --tol",
+            settings.tol
+        )
     })
 }
 
@@ -202,7 +232,8 @@ fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>
     };
     let name = settings.integrator.name();
     let mut warnings = Vec::new();
-    if settings.step.is_none() && 2.0 * settings.until >= step * AUTOMATIC_STEPS {
+    let has_steps = solved.run.counters.accepted > 0;
+    if has_steps && settings.step.is_none() && 2.0 * settings.until >= step * AUTOMATIC_STEPS {
         warnings.push(format!(
             "{name} with step {step}, the shortest that is chosen for a run of this length: errors may be above --tol {:e}; set \
              a shorter one with --step, or take an integrator of higher order",
@@ -324,12 +355,25 @@ struct Bridge<'a, M, R> {
     watch: &'a mut dyn Watch,
     /// The energy balance, if the watch wants warnings about a fixed-step integrator.
     balance: Option<Balance>,
+    /// The largest absolute value of a coordinate, if the watch wants warnings.
+    reach: Option<f64>,
 }
 
 impl<M: Model, R: Reading<M::State>> Bridge<'_, M, R> {
     /// The values of a state, with the present values of the integrals.
     fn point(&self, t: f64, state: &M::State) -> Point {
         self.integrals.put(self.reading.point(t, state))
+    }
+
+    /// Takes note of the sizes of the coordinates.
+    fn follow(&mut self, state: &M::State) {
+        if let Some(reach) = &mut self.reach {
+            let q = self.model.position(state);
+            *reach = q
+                .as_slice()
+                .iter()
+                .fold(*reach, |most, q| larger(most, q.abs()));
+        }
     }
 
     fn go_on(&self) -> ControlFlow<()> {
@@ -345,6 +389,8 @@ impl<M: Model, R: Reading<M::State>> Observer<M> for Bridge<'_, M, R> {
         if let Some(balance) = &mut self.balance {
             balance.follow(self.model, segment);
         }
+        let end = *segment.end();
+        self.follow(&end);
         self.watch.step(&SegmentPiece {
             description: self.model.description(),
             reading: &self.reading,

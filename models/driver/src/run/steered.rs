@@ -188,6 +188,7 @@ fn run<'f, 'c>(
         integrals: Integrals::of(plain),
         watch,
         balance: None,
+        reach: None,
     });
     let first = bridge.0.point(0.0, &state);
     let budget = settings.steps.unwrap_or(STEP_BUDGET);
