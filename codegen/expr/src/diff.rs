@@ -28,8 +28,7 @@ impl Pool {
     pub fn derivative_along(&mut self, id: ExprId, directions: &[(SymbolId, ExprId)]) -> ExprId {
         let mut summands = Vec::new();
         for (symbol, direction) in directions {
-            let is_nothing = self.as_number(*direction).is_some_and(Rational::is_zero);
-            if !is_nothing && self.depends_on(id, *symbol) {
+            if !self.is_syntactic_zero(*direction) && self.depends_on(id, *symbol) {
                 let partial = self.diff(id, *symbol);
                 summands.push(self.mul(partial, *direction));
             }

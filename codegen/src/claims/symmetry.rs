@@ -10,9 +10,7 @@
 //! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2). If the flow
 //! keeps the Lagrangian itself, `f(q, t)` is 0; otherwise see [`super::gauge`].
 
-use dalembert_expr::{
-    ExpansionPoint, ExprId, Pool, Rational, RealPoint, SymbolId, Verdict as Zero,
-};
+use dalembert_expr::{ExpansionPoint, ExprId, Pool, RealPoint, SymbolId, Verdict as Zero};
 
 use super::conserved::magnitude;
 use super::continuity::possible_jump;
@@ -457,7 +455,8 @@ fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>)
     let whole = model.lagrangian.whole;
     let mut momentum = Vec::new();
     for (i, component) in field.iter().enumerate() {
-        if !is_nothing(&model.pool, *component) {
+        // The product of 0 with an expression that is not defined everywhere would be kept.
+        if !model.pool.is_syntactic_zero(*component) {
             let derivative = model.pool.diff(whole, model.coordinates[i].qdot);
             momentum.push(model.pool.mul(*component, derivative));
         }
@@ -509,16 +508,11 @@ fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>)
 fn contract(pool: &mut Pool, form: &[ExprId], field: &[ExprId]) -> ExprId {
     let mut terms = Vec::new();
     for (form, field) in form.iter().zip(field) {
-        if !is_nothing(pool, *field) {
+        if !pool.is_syntactic_zero(*field) {
             terms.push(pool.mul(*form, *field));
         }
     }
     pool.sum(&terms)
-}
-
-/// True for the number 0. Its product with an expression that is not defined everywhere is kept.
-fn is_nothing(pool: &Pool, expression: ExprId) -> bool {
-    pool.as_number(expression).is_some_and(Rational::is_zero)
 }
 
 fn readable(pool: &mut Pool, expression: ExprId) -> String {

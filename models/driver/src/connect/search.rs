@@ -178,18 +178,9 @@ impl<'a> Search<'a> {
         if !self.counts(&shot.course) {
             return;
         }
-        let most = self.speeds().most;
-        let (near, least) = (self.near(), self.units.speed);
-        let mut newton = Newton {
-            aim: self.aim,
-            units: &self.units.unknowns,
-            course: &shot.course,
-            most,
-            near,
-            least,
-            rounding: 0.0,
-        };
-        if self.plan.kinetic.is_none() {
+        let is_open = self.plan.kinetic.is_none();
+        let mut newton = self.newton(&shot.course);
+        if is_open {
             newton.most = newton.most.max(newton.length(&shot));
         }
         let arrival = newton.search(&zeros, &[], false);
@@ -429,6 +420,20 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Newton's method for motions with this sequence of impacts.
+    fn newton<'n>(&'n mut self, course: &'n Course) -> Newton<'n> {
+        let (most, near) = (self.speeds().most, self.near());
+        Newton {
+            aim: self.aim,
+            units: &self.units.unknowns,
+            course,
+            most,
+            near,
+            least: self.units.speed,
+            rounding: 0.0,
+        }
+    }
+
     /// Runs Newton's method from a candidate. Returns true if it finds a new root.
     fn try_from(
         &mut self,
@@ -436,16 +441,7 @@ impl<'a> Search<'a> {
         known: &mut Vec<Vec<f64>>,
         deflated: bool,
     ) -> bool {
-        let (most, near) = (self.speeds().most, self.near());
-        let mut newton = Newton {
-            aim: self.aim,
-            units: &self.units.unknowns,
-            course: &candidate.course,
-            most,
-            near,
-            least: self.units.speed,
-            rounding: 0.0,
-        };
+        let mut newton = self.newton(&candidate.course);
         let Arrival::Root(y) = newton.search(&candidate.y, known, deflated) else {
             return false;
         };

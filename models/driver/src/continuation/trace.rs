@@ -39,11 +39,11 @@ const NEWTON: usize = 12;
 /// A branch ends at a grazing orbit if the speed of an arrival, extrapolated linearly, is 0 within this distance.
 const GRAZING: f64 = 1e-5;
 
-/// Fraction of the largest rate of the state at which an orbit with a multiplier within `AT_REST[1]` of 1 counts as about to
+/// Fraction of the largest rate of the state, and distance of a multiplier from 1, below which an orbit counts as about to
 /// become an equilibrium.
 ///
 /// NOTE: closer to the equilibrium, any neighbouring point closes within the rounding of the return map.
-const AT_REST: [f64; 2] = [1e-3, 1e-2];
+const AT_REST: (f64, f64) = (1e-3, 1e-2);
 
 /// Largest decrease of the rate of the state in a step, as a factor.
 const SLOWER: f64 = 0.25;
@@ -515,7 +515,7 @@ pub(super) const fn ended(failure: &Failure) -> BranchEnd {
 /// True if an orbit is about to become an equilibrium. The rate of the state also vanishes where an orbit comes to pass a
 /// saddle point, but then no multiplier tends to 1.
 fn is_at_rest(local: &Local, fastest: f64) -> bool {
-    let [part, near] = AT_REST;
+    let (part, near) = AT_REST;
     let mut multipliers = local.member.multipliers.iter();
     local.pace < part * fastest && multipliers.any(|&[re, im]| f64::hypot(re - 1.0, im) < near)
 }
