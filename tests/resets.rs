@@ -4,7 +4,6 @@
 use dalembert::declaration::Described;
 use dalembert::law::Law;
 use dalembert::{EventLog, Impacting, Instance, Outcome, Run, StateVector, System, VectorField};
-use dalembert_cli::suite::Setting;
 use dalembert_cli::{Exit, Integrator};
 use dalembert_codegen::claims::Verdict;
 use dalembert_codegen::compile;
@@ -405,101 +404,4 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     let walker = Declaration::of(WalkerFootSlip::DESCRIPTION.source.value());
     let foot = "conserved under step: dot(x_c) + lf*dot(theta)*cos(theta)";
     assert!(matches!(walker.verdict(foot).verdict, Verdict::Proved(_)));
-}
-
-/// An oscillator that turns back behind a surface with a reset. The gap falls through 0 once per turn, wherever steps end.
-#[test]
-fn a_surface_behind_which_the_motion_turns_is_met_once_per_turn() {
-    macro_rules! oscillator {
-        ($gap:literal) => {
-            Text::new(concat!(
-                "Oscillator { coordinates { x; } parameters { w = 1; } lagrangian = (dot(x)^2 - w^2*x^2)/2; ",
-                "impacts { counter: ",
-                $gap,
-                " => reset { }; } }"
-            ))
-        };
-    }
-    let texts = [
-        oscillator!("x <= 0"),
-        oscillator!("x + x^3 <= 0"),
-        oscillator!("x^3 + 2*x <= 0"),
-        oscillator!("sinh(x) <= 0"),
-        oscillator!("atan(x) <= 0"),
-        oscillator!("x*exp(x) <= 0"),
-        oscillator!("x/sqrt(1 + x^2) <= 0"),
-    ];
-    for (index, text) in texts.iter().enumerate() {
-        for (k, speed) in [2.8, 1.0, 0.3].into_iter().enumerate() {
-            let w = 1.0 + 0.9 * k as f64;
-            let oscillator = text.with([("w", w)]);
-            // `x = -cos(w t) + speed/w sin(w t)` rises through 0 where `w t = atan(w/speed)`, and a turn later.
-            let turn = core::f64::consts::TAU / w;
-            let first = (w / speed).atan() / w;
-            for until in (1..40).map(|part| 0.137 * turn * f64::from(part)) {
-                let right = ((until - first) / turn).floor() + 1.0;
-                let adaptive = Integrator::every().iter().filter(|it| it.is_adaptive());
-                for (&integrator, tol) in adaptive.flat_map(|it| [(it, 1e-6), (it, 1e-10)]) {
-                    let course = Course::new(&oscillator, &[-1.0], &[speed], until);
-                    let run = course.tol(tol).observed(integrator, &mut ());
-                    let case = format!("{index}, {w}, {until}, {}, {tol}", integrator.name());
-                    assert_eq!(run.outcome, Outcome::Done, "{case}");
-                    assert_eq!(run.counters.impacts as f64, right, "{case}");
-                }
-            }
-        }
-    }
-}
-
-/// A ball whose speed is halved by a reset, as `newton(1/2)` does.
-static HALVED: Text = Text::new(
-    "Halved {
-        coordinates { x; }
-        lagrangian = dot(x)^2/2 - x;
-        impacts { floor: x >= 0 => reset { dot(x) = -dot(x)/2; }; }
-    }",
-);
-
-#[test]
-fn resets_that_accumulate_end_the_run_there() {
-    let halved = HALVED.model();
-    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
-        for k in 0..60 {
-            let x = 0.2 + 0.05 * f64::from(k);
-            let course = Course::new(&halved, &[x], &[0.0], 30.0);
-            let end = course.run(Setting::free(integrator));
-            let case = format!("{}, {x}: {:?} at {}", integrator.name(), end.outcome, end.t);
-            assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
-            // The first fall takes `sqrt(2 x)`, and each flight half of the one before.
-            assert!(
-                (end.t - 3.0 * (2.0 * x).sqrt()).abs() < 1e-12 * end.t,
-                "{case}"
-            );
-        }
-    }
-}
-
-/// A motion that is set back by distances that shrink by the factor `r`, from `x = 1/2` and then from 1. The resets accumulate
-/// at `1/2 + 1/(1 - r)`.
-static SET_BACK: Text = Text::new(
-    "SetBack {
-        coordinates { x; y; }
-        parameters { r in [0, 1] = 1/2; }
-        field { dot(x) = -1; dot(y) = 0; }
-        impacts { end: x >= 0 => reset { x = y; y = r*y; }; }
-    }",
-);
-
-#[test]
-fn shrinking_ways_to_a_surface_end_the_run() {
-    for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
-        for r in [0.1, 0.5, 0.7, 0.9] {
-            let set_back = SET_BACK.with([("r", r)]);
-            let course = Course::from_state(&set_back, state(&set_back, &[0.5, 1.0], &[]), 30.0);
-            let end = course.run(Setting::free(integrator));
-            let case = format!("{}, {r}: {:?} at {}", integrator.name(), end.outcome, end.t);
-            assert!(matches!(end.outcome, Outcome::Zeno { .. }), "{case}");
-            assert!((end.t - 0.5 - 1.0 / (1.0 - r)).abs() < 1e-12, "{case}");
-        }
-    }
 }

@@ -58,8 +58,7 @@ pub enum Fault {
     },
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
-        /// Index of the component of the state, or of its rate; for a gap, the length of a state plus the index of the
-        /// surface.
+        /// Index of the component of the state, or of its rate.
         component: usize,
     },
 }
@@ -140,10 +139,7 @@ impl fmt::Display for Fault {
                 "no velocity that satisfies constraint {constraint} was found near the given one"
             ),
             Self::NonFinite { component } => {
-                write!(
-                    f,
-                    "component {component} is not finite (components of the state are counted first, then gaps)"
-                )
+                write!(f, "component {component} is not finite")
             }
         }
     }

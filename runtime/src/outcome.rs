@@ -139,11 +139,15 @@ pub enum Outcome {
     SeveralModes,
     /// See [`Fault::NonlinearConstraints`].
     NonlinearConstraints,
-    /// A state, a rate or a gap is infinite or not a number.
+    /// A state or a rate is infinite or not a number.
     NonFinite {
-        /// Index of the component of the state. For a gap, it is the number of components plus the index of the
-        /// surface.
+        /// Index of the component of the state.
         component: usize,
+    },
+    /// A gap is not a number, or minus infinity. Its surface need not count there. The kind is `non_finite`, as above.
+    UndefinedGap {
+        /// Index of the surface.
+        surface: usize,
     },
     /// The local error stays above the tolerance even in steps that no longer change the time.
     StepUnderflow {
@@ -200,7 +204,7 @@ impl Outcome {
             Self::FirstOrder => "first_order",
             Self::SeveralModes => "several_modes",
             Self::NonlinearConstraints => "nonlinear_constraints",
-            Self::NonFinite { .. } => "non_finite",
+            Self::NonFinite { .. } | Self::UndefinedGap { .. } => "non_finite",
             Self::StepUnderflow { .. } => "step_underflow",
             Self::NotConverged { .. } => "not_converged",
             Self::LeftDomain => "left_domain",
@@ -307,6 +311,9 @@ impl fmt::Display for Outcome {
             Self::SeveralModes => Fault::SeveralModes.fmt(f),
             Self::NonlinearConstraints => Fault::NonlinearConstraints.fmt(f),
             Self::NonFinite { component } => Fault::NonFinite { component }.fmt(f),
+            Self::UndefinedGap { surface } => {
+                write!(f, "the gap of surface {surface} has no value")
+            }
             Self::StepUnderflow { t } => write!(f, "the step size underflows at t = {t}"),
             Self::NotConverged { t } => write!(
                 f,

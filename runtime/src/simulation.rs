@@ -329,9 +329,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             stepper: &mut *self.stepper,
         };
         let proposed = match self.effects.propose(&mut view) {
-            Err(outcome @ Outcome::NonFinite { component })
-                if component >= self.system.state_len() =>
-            {
+            Err(outcome @ Outcome::UndefinedGap { .. }) => {
                 return self.shorten_where_undefined(outcome);
             }
             proposed => proposed?,

@@ -85,7 +85,7 @@ const fn remedy(outcome: &Outcome, rests: bool) -> Option<&'static str> {
         Outcome::SingularSurface { .. } => {
             "a gap that the motion can change within the constraints"
         }
-        Outcome::NonFinite { .. } | Outcome::LeftDomain => {
+        Outcome::NonFinite { .. } | Outcome::UndefinedGap { .. } | Outcome::LeftDomain => {
             "another start, or shorter steps (--max-step, --step): a function has no value beyond this state"
         }
         Outcome::StepUnderflow { .. } => {
@@ -197,7 +197,8 @@ mod tests {
     use super::*;
 
     /// Outcomes that may end a run of the command line before its end.
-    const OUTCOMES: [Outcome; 25] = [
+    const OUTCOMES: [Outcome; 26] = [
+        Outcome::UndefinedGap { surface: 0 },
         Outcome::Zeno { t: 1.0, surface: 0 },
         Outcome::Spasmodic { t: 1.0, surface: 0 },
         Outcome::Ambiguous { surfaces: [0, 1] },

@@ -55,6 +55,7 @@ pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static st
         | Outcome::Untaken { surface: index }
         | Outcome::NoReset { surface: index }
         | Outcome::TangentialCrossing { surface: index }
+        | Outcome::UndefinedGap { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],
         Outcome::StoppedAt {
             surface: index,
@@ -144,6 +145,10 @@ pub fn explanation(description: &Description, outcome: &Outcome) -> Option<Strin
         ),
         Outcome::Contact { surface: index } => format!(
             "the state rests on `{}`, and the motion presses into it",
+            surface(index)
+        ),
+        Outcome::UndefinedGap { surface: index } => format!(
+            "the gap of `{}` has no value beyond this state, whether the surface counts there or not",
             surface(index)
         ),
         Outcome::TangentialCrossing { surface: index } => {

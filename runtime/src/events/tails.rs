@@ -65,6 +65,9 @@ const GOOD: f64 = 1.0 / (1 << 10) as f64;
 /// Maximum number of steps to wait after a useless bound.
 const MOST_PATIENCE: u32 = 256;
 
+/// Largest share of rounding errors in a bound for which they are not bounded better.
+const SMALL: f64 = 1.0 / (1 << 4) as f64;
+
 /// Factor that covers the relative rounding errors of the estimate.
 const UP: f64 = 1.0 + 64.0 * f64::EPSILON;
 
@@ -92,6 +95,28 @@ struct Bound {
     /// Upper bound of the degree as a polynomial of positions and time; `None` if the gap is not a polynomial.
     degree: Option<u32>,
     takes: Takes,
+    /// True if `rounding` and `floor` were found on a smaller box.
+    is_sharp: bool,
+}
+
+impl Bound {
+    /// The bounds on a box. `ratio` is an index into [`RATIOS`].
+    fn new(whole: ComplexInterval, takes: Takes, ratio: usize) -> Self {
+        Self {
+            height: whole.height,
+            // In proportion to the imaginary parts.
+            rounding: PARTS[ratio] * whole.rounding,
+            floor: whole.floor,
+            degree: whole.degree(),
+            takes,
+            is_sharp: false,
+        }
+    }
+
+    /// Bounds the rounding errors by the gap on a box that is smaller by the factor [`PARTS`].
+    fn sharpen(&mut self, inner: ComplexInterval) {
+        (self.rounding, self.floor, self.is_sharp) = (inner.rounding, inner.floor, true);
+    }
 }
 
 /// Quantities that a gap depends on.
@@ -106,6 +131,11 @@ impl Takes {
     const NOTHING: Self = Self {
         positions: 0,
         time: false,
+    };
+
+    const EVERYTHING: Self = Self {
+        positions: u64::MAX,
+        time: true,
     };
 }
 
@@ -252,22 +282,21 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             self.ratio = ratio;
             self.room.forget();
         }
-        self.radii = self.radii.zeroed();
-        self.degree = 1;
-        for (k, (coefficient, power)) in terms.iter().zip(&POWERS[ratio]).enumerate().skip(1) {
-            let mut bits = 0;
+        let mut radii = self.radii.zeroed();
+        for (coefficient, power) in terms.iter().zip(&POWERS[ratio]).skip(1) {
             coefficient.for_each_place(|i| {
-                let size = coefficient.padded()[i].abs();
-                self.radii.padded_mut()[i] += power * size;
-                bits |= size.to_bits();
+                radii.padded_mut()[i] += power * coefficient.padded()[i].abs();
             });
-            if bits != 0 {
-                self.degree = k as u32;
-            }
         }
-        for radius in self.radii.as_mut_slice() {
+        for radius in radii.as_mut_slice() {
             *radius *= UP;
         }
+        self.radii = radii;
+        let is_zero = |component: &f64| *component == 0.0;
+        let last = terms
+            .iter()
+            .rposition(|term| !term.as_slice().iter().all(is_zero));
+        self.degree = last.map_or(1, |k| k.max(1) as u32);
         self.time_radius = RATIOS[ratio] * path.length() * UP;
     }
 
@@ -318,11 +347,8 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         evaluations: &mut u64,
     ) -> Tail {
         let bound = match self.surfaces[surface].bounds[self.level] {
-            Some(bound) => bound,
-            None => {
-                *evaluations += 1;
-                self.bound(surface, at)
-            }
+            Some(bound) if self.suffices(&bound, order) => bound,
+            known => self.bound(surface, (known, order), at, evaluations),
         };
         self.tail(&bound, self.scale(bound.takes) / LEVELS[self.level], order)
     }
@@ -335,8 +361,8 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         (gap, path): (Gap<'_>, &Path<S>),
         evaluations: &mut u64,
     ) -> Tail {
-        *evaluations += 1;
-        let bounded = |part: f64| {
+        let mut bounded = |part: f64| {
+            *evaluations += 1;
             let varying =
                 |real: Interval, radius: f64| ComplexInterval::varying(real, part * radius);
             let component = |i: usize| match i < self.room.positions() {
@@ -346,43 +372,61 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             let time = varying(times(path, self.time_radius), self.time_radius);
             gap(time, &component)
         };
-        let (whole, inner) = (bounded(1.0), bounded(PARTS[self.ratio]));
-        let bound = Bound {
-            height: whole.height,
-            rounding: inner.rounding,
-            floor: inner.floor,
-            degree: whole.degree(),
-            takes: Takes {
-                positions: u64::MAX,
-                time: true,
-            },
-        };
+        let mut bound = Bound::new(bounded(1.0), Takes::EVERYTHING, self.ratio);
+        if !self.suffices(&bound, order) {
+            bound.sharpen(bounded(PARTS[self.ratio]));
+        }
         self.tail(&bound, 1.0, order)
+    }
+
+    /// Bound of the missing terms of a step whose radii are those of the box of `bound`.
+    #[inline]
+    fn missing(&self, bound: &Bound, order: usize) -> f64 {
+        let is_whole = bound
+            .degree
+            .and_then(|degree| degree.checked_mul(self.degree))
+            .is_some_and(|degree| degree as usize <= order);
+        match is_whole {
+            true => 0.0,
+            false => 2.0 * bound.height / (POWERS[self.ratio][order] * self.beyond()),
+        }
+    }
+
+    /// True if the rounding errors are bounded well, or small beside the missing terms.
+    #[inline]
+    fn suffices(&self, bound: &Bound, order: usize) -> bool {
+        bound.is_sharp || bound.rounding + bound.floor <= SMALL * self.missing(bound, order)
+    }
+
+    /// Distance of the disk from the step, in step lengths.
+    #[inline]
+    fn beyond(&self) -> f64 {
+        RATIOS[self.ratio] - 1.0
     }
 
     /// Bounds for a step whose radii are `scale` times those of the box of `bound`.
     #[inline]
     fn tail(&self, bound: &Bound, scale: f64, order: usize) -> Tail {
-        let is_whole = bound
-            .degree
-            .and_then(|degree| degree.checked_mul(self.degree))
-            .is_some_and(|degree| degree as usize <= order);
-        let beyond = RATIOS[self.ratio] - 1.0;
-        let value = match is_whole {
-            true => 0.0,
-            false => 2.0 * scale * bound.height / (POWERS[self.ratio][order] * beyond),
-        };
+        let value = scale * self.missing(bound, order);
         let rounding = scale * bound.rounding;
+        let terms = order as f64;
         Tail {
             value: (value + rounding) * UP,
-            slope: (value * (order as f64 + 1.0 + 1.0 / beyond) + rounding * order as f64) * UP,
+            slope: (value * (terms + 1.0 + 1.0 / self.beyond()) + rounding * terms) * UP,
             floor: bound.floor,
         }
     }
 
-    /// Bounds of a gap on the box. If the gap depends on positions that the box did not bound, the box is set anew.
+    /// Bounds of a gap on the box that suffice for a series of this order, from those that are known. If the gap
+    /// depends on positions that the box did not bound, the box is set anew.
     #[cold]
-    fn bound(&mut self, surface: usize, (gap, path): (Gap<'_>, &Path<S>)) -> Bound {
+    fn bound(
+        &mut self,
+        surface: usize,
+        (known, order): (Option<Bound>, usize),
+        (gap, path): (Gap<'_>, &Path<S>),
+        evaluations: &mut u64,
+    ) -> Bound {
         let takes = match self.surfaces[surface].takes {
             Some(takes) => takes,
             None => {
@@ -399,7 +443,8 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
                 takes
             }
         };
-        let bounded = |part: f64| {
+        let mut bounded = |part: f64| {
+            *evaluations += 1;
             let varying =
                 |real: Interval, height: f64| ComplexInterval::varying(real, part * height);
             let component = |i: usize| match i < self.room.positions() {
@@ -410,16 +455,12 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             gap(time, &component)
         };
         let level = LEVELS[self.level];
-        let (whole, inner) = (bounded(level), bounded(PARTS[self.ratio] * level));
-        let bound = Bound {
-            height: whole.height,
-            rounding: inner.rounding,
-            floor: inner.floor,
-            degree: whole.degree(),
-            takes,
-        };
-        let known = &mut self.surfaces[surface];
-        (known.takes, known.bounds[self.level]) = (Some(takes), Some(bound));
+        let mut bound = known.unwrap_or_else(|| Bound::new(bounded(level), takes, self.ratio));
+        if !self.suffices(&bound, order) {
+            bound.sharpen(bounded(PARTS[self.ratio] * level));
+        }
+        let kept = &mut self.surfaces[surface];
+        (kept.takes, kept.bounds[self.level]) = (Some(takes), Some(bound));
         bound
     }
 

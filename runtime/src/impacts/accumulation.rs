@@ -7,7 +7,7 @@
 //!   about `gap rate * time / 4`, is below the rounding of the gap ([`super::hops`]).
 //! - The flights have become too short to be resolved while the energy grew ([`super::growth`]).
 
-use super::coincident::{Coincident, Gathering};
+use super::coincident::{Coincident, Gathering, REVERSED};
 use super::growth::Growth;
 use super::hops::{Flight, Hops};
 use super::passing::Passing;
@@ -34,6 +34,16 @@ pub(super) struct Bounce {
     pub(super) rates: [f64; 2],
     /// True if the surface was already struck at the same moment, without a flight in between.
     pub(super) again: bool,
+    /// True for an impulse. A reset may set any gap rate, whatever it was before.
+    pub(super) by_impulse: bool,
+}
+
+impl Bounce {
+    /// True if the gap rate after the impact exceeds that before.
+    pub(super) fn gains(&self) -> bool {
+        let [before, after] = self.rates;
+        after > (1.0 + REVERSED) * before.abs()
+    }
 }
 
 /// Data kept of the impacts so far.
@@ -87,6 +97,8 @@ impl<G: StateVector> Accumulation<G> {
             Gathering::Hops(hopping) if hopping == surface => Some(Ends::Hops(hops.end(t))),
             // The surface is hit at the time at which hops on another one end.
             Gathering::Hops(_) => None,
+            // A reset that adds to the gap rate adds energy, or what takes its place.
+            Gathering::Several if bounce.gains() && !bounce.by_impulse => Some(Ends::Spasmodic(t)),
             Gathering::Several => Some(Ends::AtOneTime(t)),
         }
     }
@@ -97,7 +109,7 @@ impl<G: StateVector> Accumulation<G> {
         self.hops[surface] = Hops::NONE;
         self.growth.forget(surface);
         self.passing.add(surface, t);
-        let are_many = self.coincident.are_many();
+        let are_many = self.coincident.are_many() || self.passing.are_endless();
         are_many.then_some(Ends::AtOneTime(t))
     }
 
@@ -112,9 +124,19 @@ impl<G: StateVector> Accumulation<G> {
         self.passing.has_accumulated(surface, t)
     }
 
-    /// True if passages through surfaces followed each other ever faster until one through this surface at the time `t`.
-    pub(super) fn passes_ever_faster(&self, surface: usize, t: f64) -> bool {
-        self.passing.is_ever_faster(surface, t)
+    /// True if the last passages at different times, until `t`, could hardly be distinguished.
+    pub(super) fn has_quickened(&self, t: f64) -> bool {
+        self.passing.has_quickened(t)
+    }
+
+    /// Records a reset on this surface; see [`Passing::leads_back`].
+    pub(super) fn lead_off(&mut self, surface: usize, t: f64) {
+        self.passing.lead_off(surface, t);
+    }
+
+    /// True if the ways back to this surface became ever shorter; see [`Passing::leads_back`].
+    pub(super) fn leads_back(&mut self, surface: usize) -> bool {
+        self.passing.leads_back(surface)
     }
 
     /// True if the motion passed through this surface at the time `t` or just before; see [`Passing::has_passed_at`].
@@ -145,6 +167,7 @@ mod tests {
                 t,
                 rates,
                 again: false,
+                by_impulse: true,
             };
             accumulation.add(bounce, || 1e-15, || None)
         })

@@ -10,11 +10,11 @@ use super::repeats::Repeats;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Number of impacts at one time from which they count as accumulated. A corner of angle `pi / n` takes up to `n`.
-const MANY: u32 = 100;
+/// Number of repeated impacts at one time from which they count as accumulated. A corner of angle `pi / n` takes up to `n`.
+pub(super) const MANY: u32 = 100;
 
 /// Relative difference of the gap rates before and after an impact up to which it counts as reversing.
-const REVERSED: f64 = 1.0 / (1 << 20) as f64;
+pub(super) const REVERSED: f64 = 1.0 / (1 << 20) as f64;
 
 /// Fraction of the largest gap rate at one time below which a rate counts as decayed.
 const DIED: f64 = 1.0 / (1 << 20) as f64;
@@ -53,6 +53,8 @@ const ENDLESS: u32 = 1 << 14;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coincident<G: StateVector> {
     impacts: Repeats,
+    /// Number of impacts on surfaces that had been hit before at this time.
+    repeated: u32,
     /// Number of impacts that did not reverse the gap rate.
     unequal: u32,
     on_each: PerSurface<Tally, G>,
@@ -63,6 +65,7 @@ impl<G: StateVector> Coincident<G> {
     pub(super) fn none(like: &G) -> Self {
         Self {
             impacts: Repeats::none(),
+            repeated: 0,
             unequal: 0,
             on_each: PerSurface::all(like, Tally::NONE),
         }
@@ -86,10 +89,12 @@ impl<G: StateVector> Coincident<G> {
     /// Counts an impact, regardless of its rates.
     pub(super) fn count(&mut self, surface: usize, t: f64) {
         if self.impacts.add(t) == 0 {
-            self.unequal = 0;
+            (self.repeated, self.unequal) = (0, 0);
             self.on_each.fill(Tally::NONE);
         }
-        self.on_each[surface].count += 1;
+        let count = &mut self.on_each[surface].count;
+        self.repeated += u32::from(*count > 0);
+        *count += 1;
     }
 
     /// Time of the last impact.
@@ -99,7 +104,7 @@ impl<G: StateVector> Coincident<G> {
 
     /// True if there are too many impacts at one time to wait for their end.
     pub(super) fn are_many(&self) -> bool {
-        self.impacts.count() >= MANY
+        self.repeated >= MANY
     }
 
     /// Conclusion from the impacts so far; `bounce` is the last.
@@ -123,10 +128,9 @@ impl<G: StateVector> Coincident<G> {
 
     /// True if infinitely many impacts on several surfaces happen at one time.
     fn are_infinite(&self, bounce: Bounce) -> bool {
-        let [before, after] = bounce.rates;
+        let [_, after] = bounce.rates;
         let has_died = after <= DIED * self.on_each[bounce.surface].fastest;
-        let has_gained = after > (1.0 + REVERSED) * before.abs();
         let is_endless = self.on_each[bounce.surface].count >= ENDLESS;
-        self.unequal >= MANY && (has_died || has_gained || is_endless)
+        self.unequal >= MANY && (has_died || bounce.gains() || is_endless)
     }
 }

@@ -198,7 +198,8 @@ impl<Sys: Impacting> Impacts<Sys> {
             let before = (state, rates);
             (state, rates) = (struck.after, struck.rates);
             let has_moved = now.system.position(&state) != now.system.position(&before.0);
-            if has_moved && now.system.mode(&state) != now.system.mode(&before.0) {
+            let enters = now.system.mode(&state) != now.system.mode(&before.0);
+            if has_moved && enters {
                 return Ok(Some(state));
             }
             let mut there = Moment {
@@ -207,11 +208,14 @@ impl<Sys: Impacting> Impacts<Sys> {
                 state: &mut state,
                 counters: now.counters,
             };
-            if has_moved {
-                // A reset leads elsewhere, where other surfaces may still be at hand.
+            if has_moved || enters {
+                // A reset leads elsewhere, where other surfaces may still be at hand. A mode has surfaces of its own.
                 let gaps = measured(&mut there)?;
                 hits.replace(self.watch.at_hand(&gaps, &rates, &mut there));
-                hits.set_done(surface);
+                match enters {
+                    true => self.watch.pass_by(&mut hits, now.system),
+                    false => hits.set_done(surface),
+                }
                 continue;
             }
             hits.set_still(surface, -rates.as_slice()[surface]);

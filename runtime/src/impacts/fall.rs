@@ -24,6 +24,8 @@ pub(super) struct Known<'a, G: StateVector> {
     pub(super) ends: [f64; 2],
     /// Taylor model of the gap on the whole step.
     pub(super) whole: Option<TaylorModel>,
+    /// The gap at a start that counts as 0: the gap is measured from there.
+    pub(super) offset: f64,
 }
 
 /// The largest magnitudes of the components, which give the rounding errors of a gap.
@@ -62,26 +64,29 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         series,
         ends,
         whole,
+        offset,
     }: Known<'_, Sys::Gaps>,
     start: Start,
 ) -> Search {
     let (mut evaluations, mut more, mut enclosures) = (0, 0, 0);
     let mut gap = |part: f64| {
         evaluations += 1;
-        gap_at(surface, step, part)
+        gap_at(surface, step, part) - offset
     };
     let path = RefCell::new(path);
     let mut along = |part: [f64; 2]| {
         let certain = series.filter(|series| series.is_certain(surface));
         let model = certain.and_then(|series| series.on(surface, part));
-        model.unwrap_or_else(|| {
+        let mut model = model.unwrap_or_else(|| {
             enclosures += 1;
             let mut path = path.borrow_mut();
             path.enclose();
             let component = |i: usize| path.component(i, part);
             step.system
                 .gap_along(surface, path.time_model(part), &component)
-        })
+        });
+        model.powers[0] -= offset;
+        model
     };
     let mut rounding = |part: f64| {
         let sizes = sizes.along(&mut path.borrow_mut());
@@ -132,7 +137,7 @@ fn plain_fall<G: StateVector>(
     gap: &mut dyn FnMut(f64) -> f64,
 ) -> Plain {
     let is_certain = series.is_certain(surface);
-    let is_plain = start.from == 0.0 && start.above && (is_certain || series.is_sharp);
+    let is_plain = start.from == 0.0 && start.above && (is_certain || series.is_close);
     if !is_plain {
         return Plain::Unknown;
     }

@@ -81,15 +81,12 @@ impl<G: StateVector> Glance<G> {
     }
 }
 
-/// Returns the gaps if all are finite, or too large for a number. Otherwise the error has the index `state_len + surface`
-/// of the first gap that is not.
+/// Returns the gaps if all are finite, or too large for a number. Otherwise the error has the first that is not.
 #[inline(always)]
-pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
+pub(super) fn finite<G: StateVector>(gaps: G) -> Result<G, Outcome> {
     let is_gap = |gap: &f64| gap.is_finite() || *gap == f64::INFINITY;
     match gaps.as_slice().iter().position(|gap| !is_gap(gap)) {
-        Some(surface) => Err(Outcome::NonFinite {
-            component: system.state_len() + surface,
-        }),
+        Some(surface) => Err(Outcome::UndefinedGap { surface }),
         None => Ok(gaps),
     }
 }
@@ -114,7 +111,7 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
         }
     };
     Ok(Glance {
-        gaps: finite(step.system, gaps)?,
+        gaps: finite(gaps)?,
         rates: None,
         has_series,
         length,

@@ -126,6 +126,11 @@ impl Series {
         }
         let last = self.count(length, &energy);
         if last.number == FIRST {
+            if length <= ROUNDED * t.abs() / SHRUNK {
+                // Rounding of times decides which flights seem to shrink.
+                *self = Self::NONE;
+                return None;
+            }
             let energy = energy();
             self.first = Some((Flight { energy, ..last }, rate));
             return None;

@@ -153,6 +153,18 @@ impl<G: StateVector> Hits<G> {
         self.still[surface] = Still::Done;
     }
 
+    /// True if the surface is at hand and settled.
+    pub(super) fn is_settled(&self, surface: usize) -> bool {
+        self.at_hand[surface] && self.still[surface] == Still::Done
+    }
+
+    /// Lets a settled surface be approached again.
+    pub(super) fn reopen(&mut self, surface: usize) {
+        if self.still[surface] == Still::Done {
+            self.still[surface] = Still::UpTo(0.0);
+        }
+    }
+
     /// Replaces the surfaces at hand; settled ones stay settled.
     pub(super) fn replace(&mut self, at_hand: PerSurface<bool, G>) {
         self.at_hand = at_hand;

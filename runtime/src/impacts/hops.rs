@@ -1,6 +1,7 @@
 //! Hops on one surface: flights that shrink from one impact to the next, and the time of their end.
 
 use super::accumulation::Bounce;
+use super::passing::SOON;
 
 /// Number of flights that must have shrunk in a row before their height is tested.
 pub(super) const SHRUNK: u32 = 3;
@@ -9,6 +10,9 @@ pub(super) const SHRUNK: u32 = 3;
 /// between them has reduced the gap rate as much. Gap rates at different places may differ because the gap is steep at
 /// one of them.
 const STEEP: f64 = 0.125;
+
+/// Largest ratio of two reductions of the gap rate by resets that count as alike.
+const ALIKE: f64 = 4.0;
 
 /// Largest time from an impact to the end of the hops, in lengths of the flight before it. A larger estimate stems from
 /// flights whose gap rates have stopped to shrink.
@@ -28,6 +32,8 @@ struct Impact {
     t: f64,
     /// Gap rate after the impact.
     rate: f64,
+    /// Ratio of the gap rates after and before it.
+    kept: f64,
     /// Length of the flight; `None` at the first impact.
     length: Option<f64>,
     /// The count [`Flight::shrunk`] of the flight before; 0 at the first impact.
@@ -76,19 +82,15 @@ impl Hops {
     /// Records an impact. Returns the flight that it ended; `None` for the first impact, or for another one at the
     /// same moment.
     pub(super) fn land(&mut self, bounce: Bounce) -> Option<Flight> {
-        let Bounce {
-            t,
-            rates: [arrival, rate],
-            again,
-            ..
-        } = bounce;
-        if again {
+        let Bounce { t, rates, .. } = bounce;
+        let [arrival, rate] = rates;
+        if bounce.again || self.last.is_some_and(|last| last.t == t) {
             if let Some(last) = &mut self.last {
                 last.rate = rate;
             }
             return None;
         }
-        let flight = self.last.map(|last| last.flight(t, [arrival, rate]));
+        let flight = self.last.map(|last| last.flight(bounce));
         self.ends = match flight {
             Some(flight) if flight.shrunk > 0 => {
                 let [by_rates, by_lengths] = flight.ends(t);
@@ -102,15 +104,18 @@ impl Hops {
         self.last = Some(Impact {
             t,
             rate,
+            kept: rate / arrival.abs(),
             length: flight.map(|flight| flight.length),
             shrunk: flight.map_or(0, |flight| flight.shrunk),
         });
         flight
     }
 
-    /// True if the last impact was at `t`, and the motion rose from it.
+    /// True if the last impact was at `t` or hardly before, and the motion rose from it.
     pub(super) fn has_bounced_at(&self, t: f64) -> bool {
-        self.last.is_some_and(|last| last.t == t && last.rate > 0.0)
+        let is_at = |last: &Impact| t - last.t <= SOON * t.abs();
+        self.last
+            .is_some_and(|last| is_at(&last) && last.rate > 0.0)
     }
 
     /// The time at which the hops end; at least the time `t` of the last impact.
@@ -127,10 +132,14 @@ impl Hops {
 }
 
 impl Impact {
-    /// The flight from this impact to the next one at `t`, before and after which the gap has these rates.
-    fn flight(self, t: f64, [arrival, rate]: [f64; 2]) -> Flight {
-        let length = t - self.t;
-        let is_steep = rate < STEEP * self.rate.min(arrival.abs());
+    /// The flight from this impact to the next one.
+    fn flight(self, next: Bounce) -> Flight {
+        let [arrival, rate] = next.rates;
+        let length = next.t - self.t;
+        let kept = rate / arrival.abs();
+        // A reset may set any rate once. If it reduces the rate again by as much, it will go on.
+        let goes_on = next.by_impulse || (kept <= ALIKE * self.kept && self.kept <= ALIKE * kept);
+        let is_steep = goes_on && rate < STEEP * self.rate.min(arrival.abs());
         let shrunk = match is_shorter(length, self.length) {
             true if is_steep => SHRUNK + 1,
             true => self.shrunk.saturating_add(1),
@@ -140,7 +149,7 @@ impl Impact {
             length,
             before: self.length,
             rates: [self.rate, rate],
-            kept: rate / arrival.abs(),
+            kept,
             shrunk,
         }
     }

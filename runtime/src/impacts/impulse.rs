@@ -142,13 +142,20 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
         let is_held = self.resting.held().is_held(surface);
         if law == Law::Transition && !is_held && !self.accumulation.has_passed_at(surface, t) {
-            // It begins to count where the motion is on it.
+            // It begins to count where the motion is on it, perhaps without a gap rate.
             self.resting.count(surface, t)?;
             self.watch.cut_at(surface, 0.0, step.length());
+            self.watch.is_shown_by_values[surface] = self.watch.rates.as_slice()[surface] <= 0.0;
             return Ok(Some(0.0));
         }
         // After a bounce: the hops have become too small to rise from the surface.
         let accumulation = self.accumulation.ends_at(surface, t);
+        if law == Law::Reset && accumulation.is_some() && self.throws_up(surface, step)? {
+            // The hop takes no time that can be resolved. The next one may be larger: impacts at one time are counted.
+            self.watch.cut_at(surface, 0.0, step.length());
+            self.watch.is_shown_by_values[surface] = true;
+            return Ok(Some(0.0));
+        }
         match (self.may_rest(surface), accumulation) {
             (false, None) => return Err(Outcome::Contact { surface }),
             (false, Some(t)) => return Err(Outcome::Zeno { t, surface }),
@@ -156,6 +163,19 @@ impl<Sys: Impacting> Impacts<Sys> {
             (true, None) => {}
         }
         self.resting.press(surface, t)
+    }
+
+    /// True if the reset of a surface throws the motion up again that it has just thrown up. One that depends on the velocity would
+    /// have to know that at the end of the hop.
+    fn throws_up<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Result<bool, Outcome> {
+        let (system, t) = (step.system, step.t_start());
+        let landing = system.landing(surface, t, step.start())?;
+        let rates = system.gap_rates(t, &landing.state)?;
+        Ok(rates.as_slice()[surface] > 0.0)
     }
 
     /// The surface hit at `theta` on which the motion is in balance at the start of the step and into which it is pressed at
@@ -353,7 +373,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             }
             Err(Outcome::Contact { surface }) => self.press(surface, step),
             // At rest on the surface: a force that grows from 0 presses.
-            Err(Outcome::TangentialCrossing { surface }) if self.may_rest(surface) => {
+            Err(Outcome::TangentialCrossing { surface })
+                if self.may_rest(surface)
+                    || self.law_of(step.system, surface) == Law::Transition =>
+            {
                 self.press(surface, step)
             }
             Err(outcome) => Err(outcome),

@@ -290,6 +290,7 @@ mod tests {
             last: One::new(terms.iter().sum()),
             slopes: One::zeros(),
             is_sharp: true,
+            is_close: true,
         }
     }
 

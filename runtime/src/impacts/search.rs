@@ -40,6 +40,12 @@ pub(super) const FLAT: f64 = 64.0;
 /// Rise of a gap from a touched surface, relative to the gap at the end of the step, below which it may be a rounding error.
 const FAINT: f64 = 1.0 / (1 << 26) as f64;
 
+/// Ratio of the gap at the start of a hop to its height below which the hop is measured from the surface.
+const LOW: f64 = 1.0 / 64.0;
+
+/// Largest ratio of the gap rates at the end and at the start of a hop that rounding may hide, with which the end counts as seen.
+const UNEVEN: f64 = 8.0;
+
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
@@ -98,7 +104,11 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
             }
             let last_rate = last_rates.as_slice()[surface];
-            let (part, rate) = match self.first_hit(surface, step, glance, whole)? {
+            let found = self.first_hit(surface, step, glance, whole)?;
+            if matches!(found, Found::Nothing) && self.has_fallen_unseen(surface, step, glance) {
+                return Err(Outcome::Contact { surface });
+            }
+            let (part, rate) = match found {
                 Found::Hit(part, rate) => (part, Some(rate)),
                 // No shortening of the step decides such a gap. The step would be cut again and again at its start.
                 Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
@@ -203,12 +213,19 @@ impl<Sys: Impacting> Watch<Sys> {
         // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate leaves the
         // touched surface, whatever the rounding error of the gap.
         let leaves_at_once = slope >= Some(0.0) && glance.is_moment();
+        let offset = match slope {
+            Some(slope) if self.is_thrown_up(surface, slope) => {
+                self.offset(surface, (slope, ends[1]), step)
+            }
+            _ => 0.0,
+        };
         let mut tangential = None;
         for _ in 0..FALLS {
             let known = Known {
                 series: self.series.known(),
                 ends,
                 whole,
+                offset,
             };
             let found = first_fall(surface, step, &mut self.path, &mut sizes, known, start);
             let is_open = !(leaves_at_once && matches!(found, Search::Pole(..)));
@@ -269,6 +286,34 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(Found::Unfinished(start.from))
     }
 
+    /// The gap at the start of a step on a surface from which a reset has thrown the motion up, if it is a rounding error, and
+    /// not far smaller than the height of the hop; else 0. `slope` is that of the gap at the start, `last` the gap at the end.
+    #[inline(never)]
+    fn offset<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        (slope, last): (f64, f64),
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> f64 {
+        let (t, state) = (step.t_start(), *step.start());
+        step.counters.event_evaluations += 1;
+        let gap = step.system.gap(surface, t, &state);
+        // The height of the parabola with this slope through the gap at the end.
+        let fall = slope - (last - gap);
+        let is_small = fall > 0.0 && 4.0 * fall * gap.abs() < LOW * slope * slope;
+        if gap == 0.0 || is_small {
+            return 0.0;
+        }
+        let mut sizes = step.system.scale(t, &state);
+        for (size, value) in sizes.as_mut_slice().iter_mut().zip(state.as_slice()) {
+            *size = size.max(value.abs());
+        }
+        match gap.abs() <= 2.0 * counted_rounding(surface, 0.0, step, &sizes) {
+            true => gap,
+            false => 0.0,
+        }
+    }
+
     /// True if the rounding errors of a step that goes far hide a gap whose sign is certain at the start.
     fn is_far_off<Step: Stepper<Sys>>(
         &self,
@@ -312,8 +357,51 @@ impl<Sys: Impacting> Watch<Sys> {
         match self.departure(surface, step, glance)? {
             Departure::Pressed(outcome) => Err(outcome),
             Departure::Rises(_) if places.after < 1.0 => Ok(ControlFlow::Continue(Fall::Elsewhere)),
+            Departure::None if self.hops_below_rounding(surface, start, glance) => {
+                Err(Outcome::Contact { surface })
+            }
             _ => Ok(ControlFlow::Break(Found::Nothing)),
         }
+    }
+
+    /// True if a reset has thrown the motion up from this surface at the start of the step, and it is below the surface at the end
+    /// although no fall was found.
+    fn has_fallen_unseen<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> bool {
+        let is_thrown_up = self.gaps.as_slice()[surface] == 0.0
+            && self.is_thrown_up(surface, self.rates.as_slice()[surface]);
+        if !is_thrown_up || self.proposed.is_some() {
+            return false;
+        }
+        let counts = |part: f64| is_active(surface, step, part);
+        if ![0.0, 0.25, 0.5, 0.75, 1.0].into_iter().all(counts) {
+            return false;
+        }
+        let falls = glance.rate(surface).is_some_and(|rate| rate < 0.0);
+        let gap = glance.gaps.as_slice()[surface];
+        gap < 0.0 && (falls || gap < -2.0 * self.rounding_at(surface, 1.0, step))
+    }
+
+    /// True if a reset has thrown the motion up from this surface; `slope` is that of the gap at the start of the step.
+    fn is_thrown_up(&self, surface: usize, slope: f64) -> bool {
+        self.is_passable(surface) && slope > 0.0
+    }
+
+    /// True if a reset has thrown the motion up from this surface by less than rounding, and it falls at the end of the step.
+    fn hops_below_rounding(
+        &self,
+        surface: usize,
+        start: Start,
+        glance: &Glance<Sys::Gaps>,
+    ) -> bool {
+        let is_thrown_up = start
+            .slope
+            .is_some_and(|slope| self.is_thrown_up(surface, slope));
+        is_thrown_up && start.above && glance.rate(surface).is_some_and(|rate| rate < 0.0)
     }
 
     /// Rounding error of a gap at a fraction of the step.
@@ -364,12 +452,16 @@ impl<Sys: Impacting> Watch<Sys> {
                 slope: None,
                 ..start
             })),
+            _ if self.hops_below_rounding(surface, start, glance) => {
+                Err(Outcome::Contact { surface })
+            }
             departure => Ok(ControlFlow::Break(departure == Some(Departure::None))),
         }
     }
 
     /// True if a fall of a touched surface belongs to the start of the step: it is there, or the gap has not risen
-    /// beyond its rounding error since then. `last` is the gap at the end of the step.
+    /// beyond its rounding error since then. `last` is the gap at the end of the step. A fall of a motion that has crossed the
+    /// surface at the start follows a rise from the other side.
     ///
     /// NOTE: rounding would otherwise produce an endless series of hops on a pressed surface, each a little later.
     fn falls_at_start<Step: Stepper<Sys>>(
@@ -379,7 +471,7 @@ impl<Sys: Impacting> Watch<Sys> {
         start: Start,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<bool, Outcome> {
-        let Some(slope) = start.slope else {
+        let Some(slope) = start.slope.filter(|_| start.above) else {
             return Ok(false);
         };
         if slope.is_nan() && is_approached_behind_start(surface, step) {
@@ -388,9 +480,17 @@ impl<Sys: Impacting> Watch<Sys> {
         if part == 0.0 || (slope <= 0.0 && is_accelerated(surface, step)?) {
             return Ok(true);
         }
+        // A reset may set a rate that is far smaller than those before, but no rounding error. A hop ends about as fast.
+        let is_thrown_up = self.is_thrown_up(surface, slope);
+        if is_thrown_up && step.time(part) > step.t_start() {
+            let arrival = -rate_at(surface, step, part)? * step.length();
+            if arrival <= UNEVEN * slope {
+                return Ok(false);
+            }
+        }
         // A rate that raises the gap by no more than its rounding error may itself be one.
         let rise = slope * part;
-        if rise > FAINT * last.abs() {
+        if !is_thrown_up && rise > FAINT * last.abs() {
             return Ok(false);
         }
         let rounding = self.rounding_at(surface, part, step);

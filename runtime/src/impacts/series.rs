@@ -21,6 +21,8 @@ use crate::state::StateVector;
 /// as that of the gap. In addition, the first terms must make up most of the sum: otherwise the step exceeds the reach
 /// of the series.
 const USEFUL: f64 = 1.0 / (1 << 20) as f64;
+/// Largest such error with which the roots of the polynomial count as estimates.
+const CLOSE: f64 = 1.0 / (1 << 8) as f64;
 
 /// Largest ratio of the error of a polynomial to its change on a part of a step with which the change counts as known.
 const HIDDEN: f64 = 1.0 / 8.0;
@@ -47,6 +49,8 @@ pub(super) struct GapSeries<G: StateVector> {
     pub(super) slopes: G,
     /// True if the slopes are accurate.
     pub(super) is_sharp: bool,
+    /// True if the roots are good estimates.
+    pub(super) is_close: bool,
 }
 
 /// The polynomials of the last step, which are computed when they are needed.
@@ -105,6 +109,7 @@ impl<G: StateVector> GapSeries<G> {
             last: zeros,
             slopes: zeros,
             is_sharp: false,
+            is_close: false,
         }
     }
 
@@ -137,12 +142,14 @@ impl<G: StateVector> GapSeries<G> {
             power *= theta;
         }
         let [sizes, steeps] = polynomials.sum();
-        self.is_sharp = true;
+        (self.is_sharp, self.is_close) = (true, true);
         for i in 0..last.count() {
             let at = |values: &G| values.as_slice()[i];
             let missed = (at(&sums) - at(last)).abs();
             let (size, first) = (at(&sizes), at(&firsts));
-            self.is_sharp &= missed <= USEFUL * size && size <= 2.0 * first;
+            let is_near = size <= 2.0 * first;
+            self.is_sharp &= missed <= USEFUL * size && is_near;
+            self.is_close &= missed <= CLOSE * size && is_near;
             let [doubts, drifts] = &mut polynomials.doubts;
             doubts.as_mut_slice()[i] = 4.0 * missed + ROUNDING * size;
             drifts.as_mut_slice()[i] = 4.0 * order as f64 * missed + ROUNDING * at(&steeps);

@@ -67,12 +67,8 @@ impl Passages {
     /// Number of transitions at one moment beyond which the motion counts as trapped between modes.
     const MOST: u32 = 64;
 
-    fn count(&mut self, surface: usize) -> Result<(), Outcome> {
-        self.0 += 1;
-        match self.0 > Self::MOST {
-            true => Err(Outcome::Trapped { surface }),
-            false => Ok(()),
-        }
+    fn are_endless(&self) -> bool {
+        self.0 >= Self::MOST
     }
 }
 
@@ -84,20 +80,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        let mut rates = self.watch.rates_here(now)?;
-        if let Some(before) = self.watch.before_kink(&hits, &rates, now)? {
-            (*now.state, rates) = (before.state, before.rates);
-        }
-        if let Some(slide) = self.resting.held().slide()
-            && !slide.meets_another(now.system, &hits)
-        {
-            // It is part of the motion.
-            hits.set_done(slide.back);
-        }
-        quieten_held(&mut hits, self.resting.held(), &rates, now)?;
-        let length = self.watch.length;
-        quieten_balanced(&mut hits, self.resting.held(), &rates, length, now)?;
-        self.pass_by_touched(&mut hits, now);
+        let mut rates = self.arrive(&mut hits, now)?;
         let mut several = hits.approached(&rates) > 1;
         let mut verdict = self.verdict();
         let mut passages = Passages(0);
@@ -128,28 +111,12 @@ impl<Sys: Impacting> Impacts<Sys> {
             (rates, next) = self.impact(strike, now, observer)?;
             if is_map {
                 wave = Wave::none(&rates);
-                let enters = now.system.mode(now.state) != now.system.mode(&arrived);
-                match enters {
-                    true => passages.count(surface)?,
-                    false => hits.set_done(surface),
-                }
-                if enters || now.system.position(now.state) != now.system.position(&arrived) {
-                    self.land(&arrived, (&mut hits, &rates), now, observer)?;
-                    if !enters {
-                        self.check_way_back(surface, (&hits, &rates), now.t)?;
-                    }
-                }
-                if enters {
-                    self.watch.pass_by(&mut hits);
-                    self.slide(surface, &mut hits, &rates, now, observer)?;
-                }
+                let course = (&mut hits, &mut passages);
+                self.follow_map(surface, (&arrived, &rates), course, now, observer)?;
             } else {
-                // A gap rate that is still negative here is a rounding error.
-                hits.set_still(surface, -rates.as_slice()[surface]);
-                quieten_beside(&mut hits, surface, [&rates_before, &rates], &arrived, now)?;
-                self.watch.touch(&mut hits, &rates, now)?;
-                let after = rates.as_slice()[surface];
-                wave.add(surface, [rate, after]);
+                let both = [&rates_before, &rates];
+                self.follow_impulse(surface, (&arrived, both), &mut hits, now)?;
+                wave.add(surface, both.map(|rates| rates.as_slice()[surface]));
                 if recurrence.add(now)? {
                     if !(wave.is_lossy() && self.may_rest(surface)) {
                         return Err(Outcome::Zeno { t: now.t, surface });
@@ -171,6 +138,74 @@ impl<Sys: Impacting> Impacts<Sys> {
             several = several || hits.approached(&rates) > 0;
         }
         self.watch.leave(&hits, now, rates)
+    }
+
+    /// The gap rates on arrival, on the near side of a kink. Gap rates that are rounding errors do not count as approaching.
+    fn arrive(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<Sys::Gaps, Outcome> {
+        let mut rates = self.watch.rates_here(now)?;
+        if let Some(before) = self.watch.before_kink(hits, &rates, now)? {
+            (*now.state, rates) = (before.state, before.rates);
+        }
+        if let Some(slide) = self.resting.held().slide()
+            && !slide.meets_another(now.system, hits)
+        {
+            // It is part of the motion.
+            hits.set_done(slide.back);
+        }
+        quieten_held(hits, self.resting.held(), &rates, now)?;
+        let length = self.watch.length;
+        quieten_balanced(hits, self.resting.held(), &rates, length, now)?;
+        self.pass_by_touched(hits, now);
+        Ok(rates)
+    }
+
+    /// The surfaces at hand after a reset or a transition of the state `arrived`. The motion may be in another mode, or elsewhere.
+    fn follow_map<O: Observer<Sys>>(
+        &mut self,
+        surface: usize,
+        (arrived, rates): (&Sys::State, &Sys::Gaps),
+        (hits, passages): (&mut Hits<Sys::Gaps>, &mut Passages),
+        now: &mut Moment<'_, Sys>,
+        observer: &mut O,
+    ) -> Result<(), Outcome> {
+        if now.system.mode(now.state) != now.system.mode(arrived) {
+            if passages.are_endless() {
+                return Err(self.trapped(surface, now.t));
+            }
+            passages.0 += 1;
+            self.land(arrived, (&mut *hits, rates), now, observer)?;
+            self.watch.pass_by(hits, now.system);
+            self.watch.reopen(hits, rates, now);
+            return self.slide(surface, hits, rates, now, observer);
+        }
+        hits.set_done(surface);
+        if now.system.position(now.state) != now.system.position(arrived) {
+            let before = *hits;
+            self.land(arrived, (&mut *hits, rates), now, observer)?;
+            self.watch.keep_at_hand(hits, &before, arrived, now)?;
+            self.watch.reopen(hits, rates, now);
+            self.check_ways_back(surface, (hits, rates), now.t)?;
+        }
+        Ok(())
+    }
+
+    /// The surfaces at hand after an impulse on the state `arrived`, with the gap rates before and after it.
+    fn follow_impulse(
+        &mut self,
+        surface: usize,
+        (arrived, both): (&Sys::State, [&Sys::Gaps; 2]),
+        hits: &mut Hits<Sys::Gaps>,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        let [_, rates] = both;
+        // A gap rate that is still negative here is a rounding error.
+        hits.set_still(surface, -rates.as_slice()[surface]);
+        quieten_beside(hits, surface, both, arrived, now)?;
+        self.watch.touch(hits, rates, now)
     }
 
     /// Marks surfaces that are met at gap rate 0 as settled, if they may hold the motion: if it presses into them from now on, they do.
@@ -200,18 +235,30 @@ impl<Sys: Impacting> Impacts<Sys> {
         Ok(())
     }
 
-    /// Ends the run if resets on this surface followed each other ever faster, and the way back from the last one takes no time
-    /// that can be resolved.
-    fn check_way_back(
-        &self,
+    /// Ends the run if a reset has led onto a surface that acted at this moment before, and the ways back to this surface became
+    /// ever shorter: the last one takes no time that can be resolved.
+    fn check_ways_back(
+        &mut self,
         surface: usize,
         (hits, rates): (&Hits<Sys::Gaps>, &Sys::Gaps),
         t: f64,
     ) -> Result<(), Outcome> {
-        let returns = hits.is_at_hand(surface) && rates.as_slice()[surface] < 0.0;
-        match returns && self.accumulation.passes_ever_faster(surface, t) {
-            true => Err(Outcome::Zeno { t, surface }),
-            false => Ok(()),
+        self.accumulation.lead_off(surface, t);
+        for surface in 0..hits.count() {
+            let returns = hits.is_settled(surface) && rates.as_slice()[surface] < 0.0;
+            if returns && self.watch.is_passable(surface) && self.accumulation.leads_back(surface) {
+                return Err(Outcome::Zeno { t, surface });
+            }
+        }
+        Ok(())
+    }
+
+    /// The end of a motion between modes that lead to each other at the time `t`: an accumulation if they did so at short
+    /// intervals before.
+    fn trapped(&self, surface: usize, t: f64) -> Outcome {
+        match self.accumulation.has_quickened(t) {
+            true => Outcome::Zeno { t, surface },
+            false => Outcome::Trapped { surface },
         }
     }
 
@@ -377,13 +424,22 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
         let leads_on = now.system.mode(&before) != now.system.mode(&struck.after);
         match struck.by_impulse {
-            // The motion goes on through the surface, or in another mode.
-            false if penetrates || leads_on => match self.accumulation.pass(surface, t) {
-                Some(_) => Err(Outcome::Zeno { t, surface }),
-                None => Ok((struck.rates, Next::Impacts)),
-            },
+            // The motion goes on through the surface, in another mode, or elsewhere.
+            false if penetrates || leads_on || self.is_displaced(surface, &before, now) => {
+                match self.accumulation.pass(surface, t) {
+                    Some(_) => Err(Outcome::Zeno { t, surface }),
+                    None => Ok((struck.rates, Next::Impacts)),
+                }
+            }
             _ => self.accumulate(strike, struck, now),
         }
+    }
+
+    /// True if a reset of the state `before` has led off its surface. A state before the reset may be as far off, within the
+    /// rounding of times.
+    fn is_displaced(&self, surface: usize, before: &Sys::State, now: &mut Moment<'_, Sys>) -> bool {
+        let [from, to] = [before, &*now.state].map(|state| now.system.gap(surface, now.t, state));
+        to.abs().min((to - from).abs()) > 2.0 * self.watch.rounding(surface, now)
     }
 
     /// True if the state still approaches a surface after an impact.
@@ -416,6 +472,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             t,
             rates: [rate, if rate_after > still { rate_after } else { 0.0 }],
             again: strike.again,
+            by_impulse: struck.by_impulse,
         };
         let may_rest = self.may_rest(surface);
         // A first-order system has no energy; the rate at which its motion leaves the surface replaces it.

@@ -37,18 +37,25 @@ pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(false)
 }
 
-/// True if the second rate of a gap accounts for its negative value at `part`. Gap and gap rate are 0 at the start of the
-/// step, and the second rate may be.
+/// True if the second rate of a gap accounts for its negative value at `part`, or its rate if it has no second one. Gap and
+/// gap rate are 0 at the start of the step, and the second rate may be.
 ///
-/// NOTE: the error of a long step's dense output may sink as well. It changes the second rate by less than that.
+/// NOTE: the error of a long step's dense output may sink as well. It changes these rates by less than that.
 pub(super) fn sinks_by_its_second_rate<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
     part: f64,
 ) -> Result<bool, Outcome> {
-    let second = second_rate_at(surface, step, part)?;
     let elapsed = part * step.length();
-    Ok(second * elapsed * elapsed < gap_at(surface, step, part))
+    let second = second_rate_at(surface, step, part)?;
+    let change = match second.is_nan() {
+        true => {
+            let rates = step.system.gap_rates(step.time(part), &step.state(part))?;
+            rates.as_slice()[surface] * elapsed
+        }
+        false => second * elapsed * elapsed,
+    };
+    Ok(change < gap_at(surface, step, part))
 }
 
 /// The second rate of a gap at a fraction of the step; NaN for a system that does not provide it.

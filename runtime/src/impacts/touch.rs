@@ -61,7 +61,7 @@ impl<Sys: Impacting> Watch<Sys> {
             Some(gaps) => gaps,
             None => {
                 now.counters.event_evaluations += 1;
-                finite(now.system, now.system.gaps(now.t, now.state))?
+                finite(now.system.gaps(now.t, now.state))?
             }
         };
         self.here = Some(gaps);

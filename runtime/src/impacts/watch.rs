@@ -259,6 +259,26 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
+    /// Keeps surfaces at hand whose gaps a reset of the state `arrived` has not changed, whatever their size.
+    pub(super) fn keep_at_hand(
+        &mut self,
+        hits: &mut Hits<Sys::Gaps>,
+        before: &Hits<Sys::Gaps>,
+        arrived: &Sys::State,
+        now: &mut Moment<'_, Sys>,
+    ) -> Result<(), Outcome> {
+        now.counters.event_evaluations += 1;
+        let gaps = finite(now.system.gaps(now.t, arrived))?;
+        for (surface, gap) in gaps.as_slice().iter().enumerate() {
+            let is_same = *gap == self.gaps.as_slice()[surface];
+            let is_active = || now.system.surface_active(surface, now.t, now.state);
+            if is_same && before.is_at_hand(surface) && is_active() {
+                hits.add(surface);
+            }
+        }
+        Ok(())
+    }
+
     /// True for the surfaces at hand, at a position with these gaps.
     pub(super) fn at_hand(
         &self,
@@ -280,10 +300,28 @@ impl<Sys: Impacting> Watch<Sys> {
         at_hand
     }
 
-    /// In a mode that was just entered, a passable surface at hand counts as settled: the motion entered there.
-    pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>) {
+    /// Lets passable surfaces act again that a reset has led off, if the way back takes no time that can be resolved.
+    pub(super) fn reopen(
+        &self,
+        hits: &mut Hits<Sys::Gaps>,
+        rates: &Sys::Gaps,
+        now: &mut Moment<'_, Sys>,
+    ) {
         for surface in 0..self.gaps.count() {
-            if self.is_passable(surface) && hits.is_at_hand(surface) {
+            let gap = self.gaps.as_slice()[surface];
+            let comes_back = hits.is_at_hand(surface) && rates.as_slice()[surface] < 0.0;
+            if comes_back && self.is_passable(surface) && gap > 2.0 * self.rounding(surface, now) {
+                hits.reopen(surface);
+            }
+        }
+    }
+
+    /// In a mode that was just entered, the surface of a transition in either direction counts as settled if it is at hand: the
+    /// motion entered there.
+    pub(super) fn pass_by(&self, hits: &mut Hits<Sys::Gaps>, system: &Sys) {
+        for surface in 0..self.gaps.count() {
+            let is_passable = self.is_passable(surface) && system.law(surface) == Law::Transition;
+            if is_passable && hits.is_at_hand(surface) {
                 hits.set_done(surface);
             }
         }
@@ -389,7 +427,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let rates = self.rates_here(now)?;
         let known = self.known_here(now).and_then(|place| place.gaps);
         let gaps = match known {
-            Some(gaps) => finite(now.system, gaps)?,
+            Some(gaps) => finite(gaps)?,
             None => measured(now)?,
         };
         self.here = Some(gaps);
@@ -561,7 +599,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<(), Outcome> {
         step.counters.event_evaluations += 1;
-        self.gaps = finite(step.system, step.system.gaps(step.t_start(), step.start()))?;
+        self.gaps = finite(step.system.gaps(step.t_start(), step.start()))?;
         self.has_rates = self.gaps.as_slice().iter().any(|&gap| gap <= 0.0);
         if self.has_rates {
             self.rates = step.system.gap_rates(step.t_start(), step.start())?;
@@ -645,7 +683,7 @@ impl<Sys: Impacting> Watch<Sys> {
 /// Gaps at a moment; fails if one is not finite.
 pub(super) fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outcome> {
     now.counters.event_evaluations += 1;
-    finite(now.system, now.system.gaps(now.t, now.state))
+    finite(now.system.gaps(now.t, now.state))
 }
 
 /// The size of a gap's rounding errors at a moment, for components that reached these sizes.
