@@ -260,6 +260,7 @@ fn compile_checked(
     refuse_claims(spec, &findings)?;
     let programs = program::lower(&model, &derivation, volume.as_ref());
     refuse_oversize(spec, &programs)?;
+    refuse_numbers(spec, &programs)?;
     // An accepted model is printed without a budget.
     model.pool.lift_budget();
     Ok(Compiled {
@@ -280,6 +281,27 @@ fn refuse_exhausted(
         true => Err(diagnostics::too_many_steps(spec.name.at)),
         false => Ok(()),
     }
+}
+
+/// Refuses equations with numbers that doubles do not have.
+fn refuse_numbers(
+    spec: &spec::Spec,
+    programs: &program::Lowered,
+) -> Result<(), diagnostics::Diagnostics> {
+    let mut diagnostics = diagnostics::Diagnostics::new();
+    let all = [&programs.main, programs.global()];
+    let mut functions = all.into_iter().flat_map(program::Program::functions);
+    let is_beyond = |op: &program::Op| match op {
+        program::Op::Number(number) => !spec::is_a_double(number),
+        _ => false,
+    };
+    if functions.any(|function| function.ops.iter().any(is_beyond)) {
+        let name = &spec.name.text;
+        let text = format!("the equations of `{name}` have a number out of the range of doubles");
+        let help = "choose units in which the numbers of the model are moderate";
+        diagnostics.error(spec.name.at, text).help(help);
+    }
+    diagnostics.finish(())
 }
 
 /// Refuses resets after which the state is off the constraints.

@@ -101,10 +101,12 @@ pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
             },
             _ => {
                 if let Some(help) = help(character) {
-                    let code = u32::from(character);
-                    let fault = format!(
-                        "the character `{character}` (U+{code:04X}) is not part of the language{help}"
-                    );
+                    let code = format!("U+{:04X}", u32::from(character));
+                    let shown = match is_hidden(character) {
+                        true => code,
+                        false => format!("`{character}` ({code})"),
+                    };
+                    let fault = format!("the character {shown} is not part of the language{help}");
                     return Some((bytes, fault));
                 }
             }
@@ -115,6 +117,11 @@ pub(crate) fn fault(text: &str) -> Option<(Range<usize>, String)> {
     let missing = closing(bracket);
     let fault = format!("`{bracket}` is not closed\nwrite the missing `{missing}`");
     Some((begin..begin + 1, fault))
+}
+
+/// True for a character that a terminal acts on, such as one that begins a sequence or changes the direction of the text.
+pub(crate) fn is_hidden(character: char) -> bool {
+    character.is_control() || character.escape_debug().to_string().starts_with("\\u")
 }
 
 /// The line up to a place.

@@ -176,7 +176,11 @@ impl Refused {
             true => (column - 1).saturating_sub(lead),
             false => 0,
         };
-        let shown: String = text.chars().skip(first).take(most).collect();
+        let printed = |c: char| match c != '\t' && lexical::is_hidden(c) {
+            true => char::REPLACEMENT_CHARACTER,
+            false => c,
+        };
+        let shown: String = text.chars().map(printed).skip(first).take(most).collect();
         let left = if first > 0 { "..." } else { "" };
         let right = if length > first + most { "..." } else { "" };
         let before = shown.chars().take(column - 1 - first);

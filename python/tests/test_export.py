@@ -1,6 +1,7 @@
 """Headers of C and functions of CasADi, against the model itself."""
 
 import ctypes
+import math
 import re
 import shutil
 import subprocess
@@ -130,6 +131,17 @@ def test_faults_have_numbers(compiler, tmp_path):
     _, call = compiled(compiler, model.to_c(), tmp_path, "thin")
     assert call("thin_rate", 0.0, [0.5, 0, 1, 1], [])[0] == 0
     assert call("thin_rate", 0.0, [2.0, 0, 1, 1], [])[0] == 1
+
+
+def test_zeros_with_a_sign_are_zeros_for_atan2(compiler, tmp_path):
+    text = """
+        Turned { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2; outputs { a: atan2(y, x); b: atan2(-y, -x); } }
+    """
+    _, call = compiled(compiler, dalembert.Model.from_text(text).to_c(), tmp_path, "turned")
+    for x, y in [(-1.0, -0.0), (-1.0, 0.0), (-0.0, 0.0), (-0.0, -0.0), (1.0, 0.0)]:
+        angle, opposite = call("turned_outputs", 0.0, [x, y, 1, 1], [])[1]
+        assert angle == (math.pi if x < 0 else 0)
+        assert opposite == (math.pi if x > 0 else 0)
 
 
 def test_a_header_has_no_unused_values(compiler, tmp_path):

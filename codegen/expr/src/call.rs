@@ -79,7 +79,7 @@ impl Pool {
     }
 
     /// The rational `r`, if the expression is `r pi`.
-    fn multiple_of_pi(&self, id: ExprId) -> Option<Rational> {
+    pub(crate) fn multiple_of_pi(&self, id: ExprId) -> Option<Rational> {
         match self.as_multiple(id) {
             (coefficient, term) if term == self.pi() => Some(coefficient),
             _ if self.is_syntactic_zero(id) => Some(Rational::ZERO),

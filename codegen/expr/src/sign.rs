@@ -177,7 +177,11 @@ impl Pool {
         };
         match function.arguments() {
             Arguments::All => Some(true),
-            Arguments::OffPoles => None,
+            Arguments::OffPoles => {
+                let multiple = self.multiple_of_pi(argument)?;
+                let is_half = (&multiple * &Rational::from(2)).is_integer();
+                Some(multiple.is_integer() || !is_half)
+            }
             Arguments::Positive => is_positive(self.sign(argument)),
             Arguments::AboveMinusOne => is_positive(self.sign_of_shifted(argument, 1)),
             Arguments::Unit => Some(self.as_number(argument)?.abs() <= Rational::ONE),
@@ -186,7 +190,7 @@ impl Pool {
 
     /// True if the form of a subexpression shows that it has no real value: a negative power of 0, a root of a negative
     /// expression, `ln` of an expression that is nowhere positive, `log1p` of one that is nowhere above -1, `asin` or
-    /// `acos` of a number outside `[-1, 1]`.
+    /// `acos` of a number outside `[-1, 1]`, `tan` of an odd multiple of `pi/2`.
     pub fn is_undefined_constant(&self, id: ExprId) -> bool {
         self.reachable(&[id])
             .into_iter()

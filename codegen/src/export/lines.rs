@@ -75,7 +75,11 @@ impl Lines {
     /// The lines of a function of a model with `n` coordinates; `None` if it reads rates, excesses or multipliers.
     pub fn of(function: &Function, n: usize) -> Option<Self> {
         let mut known: Vec<Operand> = Vec::with_capacity(function.ops.len());
-        let mut lines = Vec::new();
+        let mut lines = Self {
+            lines: Vec::new(),
+            outputs: Vec::new(),
+            next: function.ops.len(),
+        };
         for (value, op) in function.ops.iter().enumerate() {
             let at = |value: &Value| known[value.index()];
             let operand = match op {
@@ -83,15 +87,24 @@ impl Lines {
                 Op::Number(number) => Operand::Number(number.to_f64()),
                 Op::Pi => Operand::Number(core::f64::consts::PI),
                 Op::Guard(guard) => {
-                    lines.push(demand(guard, &at));
+                    lines.lines.push(demand(guard, &at));
                     Operand::Value(value)
                 }
                 _ => {
                     let (operation, mut operands) = operation(op, &at);
-                    if let Op::Power(_, exponent) = op {
-                        operands.push(Operand::Number(exponent.to_f64()));
+                    match op {
+                        Op::Power(_, exponent) => {
+                            operands.push(Operand::Number(exponent.to_f64()));
+                        }
+                        // A zero of either sign counts as 0, so that the angle on the cut is `pi`.
+                        Op::Atan2(..) => {
+                            for operand in &mut operands {
+                                *operand = lines.add("+", vec![*operand, Operand::Number(0.0)]);
+                            }
+                        }
+                        _ => {}
                     }
-                    lines.push(Line::Let {
+                    lines.lines.push(Line::Let {
                         value,
                         operation,
                         operands,
@@ -102,11 +115,8 @@ impl Lines {
             known.push(operand);
         }
         let outputs = function.outputs.iter();
-        Some(Self {
-            lines,
-            outputs: outputs.map(|output| known[output.index()]).collect(),
-            next: function.ops.len(),
-        })
+        lines.outputs = outputs.map(|output| known[output.index()]).collect();
+        Some(lines)
     }
 
     /// Adds a line and returns its value.

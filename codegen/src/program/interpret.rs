@@ -42,7 +42,8 @@ fn execute(op: &Op, values: &[f64], input: &dyn Fn(Input) -> f64) -> Result<f64,
         Op::Sqrt(a) => at(a).sqrt(),
         Op::Power(a, exponent) => at(a).powf(exponent.to_f64()),
         Op::Call(function, a) => elementary(*function, at(a)),
-        Op::Atan2(y, x) => at(y).atan2(at(x)),
+        // A zero of either sign counts as 0.
+        Op::Atan2(y, x) => (at(y) + 0.0).atan2(at(x) + 0.0),
         Op::Guard(guard) if holds(guard, values) => f64::NAN,
         Op::Guard(guard) => return Err(guard.clone()),
     })

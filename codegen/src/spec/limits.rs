@@ -1,6 +1,7 @@
 //! Limits on the size of declarations. All are counts rather than times, so that a build gives the same result on every
 //! machine.
 
+use dalembert_expr::Rational;
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::diagnostics::{Diagnostics, Location};
@@ -35,6 +36,12 @@ pub const FAMILY: i64 = 4096;
 pub const RESOLVED_PARTS: usize = 1 << 20;
 /// Nesting depth of an expression after the expansion of definitions.
 pub const RESOLVED_DEPTH: usize = 1024;
+
+/// True if the nearest double is finite, and not zero or denormal unless the number is zero.
+pub fn is_a_double(value: &Rational) -> bool {
+    let double = value.to_f64();
+    value.is_zero() || double.is_normal()
+}
 
 /// Refuses brackets that are nested deeper than [`NESTING`]. The check does not recurse; later stages may.
 pub(super) fn check_nesting(tokens: &TokenStream) -> Result<(), Diagnostics> {

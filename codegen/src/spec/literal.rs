@@ -5,7 +5,7 @@ use proc_macro2::Literal;
 
 use super::ast::{Scalar, ScalarKind};
 use super::cursor::{Cursor, Read};
-use super::limits::LITERAL_DIGITS;
+use super::limits::{LITERAL_DIGITS, is_a_double};
 use super::slips::NUMBERS;
 use crate::diagnostics::Location;
 
@@ -53,12 +53,9 @@ impl Cursor<'_> {
         }
         let value = Rational::from_decimal(&number.to_ascii_lowercase());
         value.filter(is_a_double).ok_or_else(|| {
+            let text = format!("`{number}` is out of the range of doubles");
             let help = "the absolute value of a number is 0 or lies between 2.3e-308 and 1.7e308";
-            self.refuse(
-                at,
-                format!("`{number}` is out of the range of doubles"),
-                help,
-            )
+            self.refuse(at, text, help)
         })
     }
 
@@ -79,12 +76,6 @@ impl Cursor<'_> {
         let text = format!("missing `*` between `{number}` and `{suffix}`");
         self.refuse(at, text, &format!("write `{number}*{suffix}`"))
     }
-}
-
-/// True if the nearest double is finite, and not zero or denormal unless the number is zero.
-fn is_a_double(value: &Rational) -> bool {
-    let double = value.to_f64();
-    value.is_zero() || double.is_normal()
 }
 
 /// Length of the number in a literal; the rest is its suffix.

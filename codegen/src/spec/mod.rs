@@ -24,6 +24,6 @@ pub use keyword::{
 };
 pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,
-    RESOLVED_DEPTH, RESOLVED_PARTS, SCENES, STEPS, SURFACES,
+    RESOLVED_DEPTH, RESOLVED_PARTS, SCENES, STEPS, SURFACES, is_a_double,
 };
 pub use parse::{add_claim, camel_case, mode_help, parse, read};

@@ -1,6 +1,6 @@
 //! Resolves the declared claims. Later stages decide them.
 
-use dalembert_expr::{Assumption as Known, ExprId, Node};
+use dalembert_expr::{Assumption as Known, ExprId, Node, Sign};
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
 use super::super::{Claim, Coordinate, Name, Scene, StatedFunction, Statement, Surface};
@@ -167,8 +167,8 @@ impl Resolver<'_> {
         let expr = self.quantity(value)?;
         self.check_periodic(&[value], &Scope::default(), expr);
         let surface = self.surface(under, surfaces)?;
-        let is_negative =
-            !self.pool.is_syntactic_zero(expr) && self.pool.sign(expr).is_nonpositive();
+        let sign = self.pool.sign(expr);
+        let is_negative = sign.is_nonpositive() && sign != Sign::Zero;
         if is_negative {
             let text = format!("`{value}` is not positive anywhere");
             return self.refuse(value.at, text, "volumes are counted without a sign");
@@ -343,10 +343,10 @@ impl Resolver<'_> {
                 .iter()
                 .map(|surface| surface.name.display.as_str())
                 .collect();
-            let help = if names.is_empty() {
-                "the model declares no surfaces".to_owned()
-            } else {
-                format!("the surfaces are {}", listed(names))
+            let help = match (self.modes.is_empty(), names.is_empty()) {
+                (true, true) => "the model declares no surfaces".to_owned(),
+                (true, false) => format!("the surfaces are {}", listed(names)),
+                (false, _) => "a claim about a transition stands in the mode that it leaves: `modes { slow { claims { .. } } }`".to_owned(),
             };
             let text = format!("`{display}` is not a surface");
             self.refuse(declared.name.at, text, &help)

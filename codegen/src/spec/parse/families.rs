@@ -254,6 +254,13 @@ impl Members {
         }
     }
 
+    /// The place of the mode with this name.
+    pub(super) fn position(&self, name: &Word) -> Option<usize> {
+        self.list
+            .iter()
+            .position(|mode| mode.name.text == name.text)
+    }
+
     /// Number of members of a family.
     fn size(&self, family: &str) -> usize {
         let is_of =

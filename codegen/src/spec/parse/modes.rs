@@ -90,14 +90,16 @@ pub(super) fn read(
         modes: Vec::new(),
         transitions: Vec::new(),
     };
-    for member in &members.list {
+    let readers = written.readers(&members, &constants);
+    let mut transitions = Vec::new();
+    for (mode, member) in members.list.iter().enumerate() {
         let mut mistakes = Diagnostics::new();
         refuse_shared(&member.inside, &mut mistakes);
         let mut spec = header.beginning();
         let together = [&*parts.shared, &*member.inside].concat();
         declarations(&together, body, &mut spec, &mut mistakes);
-        read.transitions =
-            written.read(&members, &constants, &member.name, &mut spec, &mut mistakes);
+        let place = (mode, &*readers);
+        transitions.extend(written.read(&members, &constants, place, &mut spec, &mut mistakes));
         diagnostics.extend_once(mistakes);
         read.modes.push(Mode {
             name: member.name.clone(),
@@ -106,6 +108,11 @@ pub(super) fn read(
             spec,
         });
     }
+    transitions.sort_by_key(|(number, _)| *number);
+    read.transitions = transitions
+        .into_iter()
+        .map(|(_, transition)| transition)
+        .collect();
     diagnostics.finish(read)
 }
 

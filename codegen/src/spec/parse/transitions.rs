@@ -11,6 +11,8 @@ use super::{documentation_length, entry_length, index, labelled};
 use crate::diagnostics::{Diagnostics, Location};
 
 const FORM: &str = "name: slow -> fast when x >= 0 when y > 0 => LAW;";
+/// What stands before the arrow.
+const LEFT: &str = "the mode that is left";
 
 /// The transitions as tokens, families written out.
 pub(super) struct Transitions<'a> {
@@ -52,17 +54,36 @@ impl<'a> Transitions<'a> {
         Self { entries }
     }
 
-    /// All transitions; those that leave this mode become surfaces of its model.
+    /// For each transition, the mode in whose model it is read: the mode that it leaves, or the first one if there is no such
+    /// mode.
+    pub(super) fn readers(&self, members: &Members, constants: &Constants) -> Vec<usize> {
+        let left = |entry: &Entry<'_>| {
+            let mut mistakes = Diagnostics::new();
+            let before = Location::opening(entry.group);
+            let mut cursor = Cursor::new(&entry.tokens, before, &mut mistakes);
+            labelled(&mut cursor, "a transition", FORM).ok()?;
+            let from = members.reference(&mut cursor, LEFT, constants).ok()?;
+            members.position(&from)
+        };
+        let places = self.entries.iter().map(left);
+        places.map(|place| place.unwrap_or(0)).collect()
+    }
+
+    /// The transitions that are read in this mode, each with its number. Those that leave the mode become surfaces of its
+    /// model.
     pub(super) fn read(
         &self,
         members: &Members,
         constants: &Constants,
-        mode: &Word,
+        (mode, readers): (usize, &[usize]),
         spec: &mut Spec,
         diagnostics: &mut Diagnostics,
-    ) -> Vec<Transition> {
+    ) -> Vec<(usize, Transition)> {
         let mut transitions = Vec::new();
-        for entry in self.entries.iter().filter(|entry| !entry.tokens.is_empty()) {
+        for (number, entry) in self.entries.iter().enumerate() {
+            if readers[number] != mode || entry.tokens.is_empty() {
+                continue;
+            }
             let before = Location::opening(entry.group);
             let mut cursor = Cursor::new(&entry.tokens, before, diagnostics);
             let Ok((transition, surface)) = transition(&mut cursor, spec, members, constants)
@@ -73,10 +94,10 @@ impl<'a> Transitions<'a> {
                 let at = cursor.last();
                 cursor.refuse(at, "expected `;`", "end the transition with `;`");
             }
-            if transition.from.text == mode.text {
+            if members.position(&transition.from) == Some(mode) {
                 spec.surfaces.push(surface);
             }
-            transitions.push(transition);
+            transitions.push((number, transition));
         }
         transitions
     }
@@ -128,7 +149,7 @@ fn transition(
     let help = format!("write `{FORM}`");
     let (documentation, declared) = labelled(cursor, "a transition", FORM)?;
     let name = name(declared, constants, cursor)?;
-    let from = members.reference(cursor, "the mode that is left", constants)?;
+    let from = members.reference(cursor, LEFT, constants)?;
     if let Some(sign) = ["=>", ","]
         .into_iter()
         .find(|sign| cursor.is_operator(sign))
