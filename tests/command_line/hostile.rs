@@ -435,3 +435,62 @@ fn a_step_that_times_cannot_resolve_is_refused() {
         ),
     ]);
 }
+
+#[test]
+fn a_refused_command_leaves_no_new_file() {
+    let folder = Folder::new("refused");
+    let [picture, table] = ["picture.svg", "table.csv"].map(|name| folder.path(name));
+    let lines = [
+        format!("simulate bouncing_ball --q 1e300 --qdot 0 --until 1 --plot {picture}"),
+        format!("ensemble bouncing_ball --members 2 --until 1 --vary nothing=1..2:2 --csv {table}"),
+        format!("simulate bouncing_ball --until 1 --csv {table} --plot {picture} --axes t,nothing"),
+    ];
+    for line in &lines {
+        refused(&line.split_whitespace().collect::<Vec<_>>());
+        for path in [&picture, &table] {
+            assert!(!std::path::Path::new(path).exists(), "{line} left {path}");
+        }
+    }
+}
+
+#[test]
+fn a_table_may_go_to_a_device() {
+    for line in [
+        "simulate bouncing_ball --until 1 --csv /dev/null",
+        "ensemble bouncing_ball --vary x=1..2:3 --until 1 --csv /dev/null",
+    ] {
+        let done = run(line);
+        assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
+    }
+    assert!(!std::path::Path::new("/dev/null.meta.json").exists());
+}
+
+#[test]
+fn an_animation_has_a_largest_length() {
+    check(&[(
+        "simulate bouncing_ball --until 1 --html never.html --duration 1e20",
+        &["--duration", "up to 600"],
+    )]);
+}
+
+#[test]
+fn the_gap_without_a_value_is_named() {
+    let text = "Past { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        impacts { root: sqrt(x) - 1/2 >= 0 when y > 5; } initial { x = 1; dot(x) = -1; until = 4; } }";
+    let done = run_on(text, &["simulate", "-"]);
+    assert_eq!(done.exit, Exit::Other, "{}", done.errors);
+    assert!(
+        done.output.contains("non_finite at t = 1"),
+        "{}",
+        done.output
+    );
+    assert!(done.output.contains("the gap of `root`"), "{}", done.output);
+}
+
+#[test]
+fn control_characters_are_not_printed() {
+    let text = "P { coordinates { x; } lagrangian = dot(x)^2 + \u{1b}[31m x; }";
+    let message = run_on(text, &["check", "-"]).errors;
+    assert!(message.contains("the character U+001B"), "{message}");
+    assert!(!message.contains('\u{1b}'), "{message}");
+}

@@ -496,8 +496,8 @@ pub struct SimulateArgs {
     /// Write a page that shows the same picture as an animation, with a slider for the time. It needs no other file.
     #[arg(long, value_name = "FILE.html", conflicts_with = "certify")]
     pub html: Option<PathBuf>,
-    /// Length of the animation of --html, in seconds.
-    #[arg(long, value_name = "S", requires = "html", value_parser = ValueParser::new(scalar::positive), default_value = "10")]
+    /// Length of the animation of --html in seconds, up to 600.
+    #[arg(long, value_name = "S", requires = "html", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::seconds_shown), default_value = "10")]
     pub duration: f64,
     /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, coordinates, velocities
     /// `x_dot`, momenta `p_x`, `energy`, `energy_error` and outputs. `q`, `qdot`, `p` and `outputs` stand for all

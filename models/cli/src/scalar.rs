@@ -91,6 +91,18 @@ pub fn nonnegative(text: &str) -> Result<f64, String> {
     within(text, |value| value >= 0.0, "a number that is not negative")
 }
 
+/// Parses the length of an animation in seconds. A page has a picture for each thirtieth of a second.
+///
+/// # Errors
+/// A description of the accepted numbers.
+pub fn seconds_shown(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        |value| value > 0.0 && value <= 600.0,
+        "a positive number up to 600",
+    )
+}
+
 /// Parses an error tolerance.
 ///
 /// # Errors

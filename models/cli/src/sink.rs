@@ -12,11 +12,45 @@ pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// The path of a file that this run created. The file is removed unless it is kept: a command that is refused leaves no
+/// empty file behind.
+pub struct Created(Option<PathBuf>);
+
+impl Created {
+    /// Keeps the file, which receives an output now.
+    pub fn keep(&mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for Created {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            // The error that ended the command is reported, not that of a file which stays behind.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
 /// Opens and locks a file with `options`, and keeps its content. Other runs are refused until the file is closed.
 ///
 /// # Errors
 /// The file cannot be written, or another run is writing it.
-pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Result<File, CliError> {
+pub fn claim(
+    flag: &'static str,
+    path: &Path,
+    options: &mut OpenOptions,
+) -> Result<(File, Created), CliError> {
+    let is_new = fs::symlink_metadata(path).is_err();
+    let file = claim_file(flag, path, options)?;
+    Ok((file, Created(is_new.then(|| path.to_owned()))))
+}
+
+fn claim_file(
+    flag: &'static str,
+    path: &Path,
+    options: &mut OpenOptions,
+) -> Result<File, CliError> {
     let failed = |source| CliError::File {
         flag,
         path: path.to_owned(),
@@ -47,6 +81,7 @@ pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Resu
 /// A file whose old content is kept until the first write or flush.
 struct Replaced {
     file: File,
+    created: Created,
     is_emptied: bool,
 }
 
@@ -54,6 +89,7 @@ impl Replaced {
     /// The file, without its old content.
     fn emptied(&mut self) -> io::Result<&mut File> {
         if !self.is_emptied {
+            self.created.keep();
             // Devices and pipes have no length.
             if self.file.metadata()?.is_file() {
                 self.file.set_len(0)?;
@@ -86,6 +122,8 @@ pub enum Sink {
         path: PathBuf,
         /// The open file.
         file: File,
+        /// Its path again, if it is new.
+        created: Created,
     },
 }
 
@@ -99,10 +137,12 @@ impl Sink {
         if is_stdout(path) {
             return Ok(Self::Stdout);
         }
+        let (file, created) = claim(flag, path, &mut OpenOptions::new())?;
         Ok(Self::File {
             flag,
             path: path.to_owned(),
-            file: claim(flag, path, &mut OpenOptions::new())?,
+            file,
+            created,
         })
     }
 
@@ -144,9 +184,15 @@ impl Sink {
                 output: Box::new(output),
                 file: None,
             },
-            Self::File { flag, path, file } => Stream {
+            Self::File {
+                flag,
+                path,
+                file,
+                created,
+            } => Stream {
                 output: Box::new(Replaced {
                     file,
+                    created,
                     is_emptied: false,
                 }),
                 file: Some((flag, path)),

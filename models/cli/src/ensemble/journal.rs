@@ -27,7 +27,7 @@ use super::difference;
 use super::fingerprint::{fingerprint, hash};
 use super::line;
 use crate::error::CliError;
-use crate::sink;
+use crate::sink::{self, Created};
 
 /// Shortest time between two saves of counts.
 const SAVE: Duration = Duration::from_secs(1);
@@ -49,6 +49,10 @@ pub struct Journal {
     /// The file of the rows: the target, or the new file beside it that replaces the target at the end.
     path: PathBuf,
     file: File,
+    /// The path of the file of the rows until it is begun, if it is new.
+    created: Created,
+    /// False for a device or a pipe, which keeps no rows and has no files beside it.
+    is_kept: bool,
     /// The locked target, while the rows are in the new file.
     claimed: Option<File>,
     /// True if this run began the file of the rows.
@@ -66,12 +70,17 @@ impl Journal {
     /// # Errors
     /// A file that cannot be written, or that another run is writing.
     pub fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
-        let file = sink::claim(flag, path, OpenOptions::new().read(true))?;
+        let (file, created) = sink::claim(flag, path, OpenOptions::new().read(true))?;
+        let metadata = file
+            .metadata()
+            .map_err(|source| failed(flag, path, source))?;
         Ok(Self {
             flag,
             target: path.to_owned(),
             path: path.to_owned(),
             file,
+            created,
+            is_kept: metadata.is_file(),
             claimed: None,
             is_begun: false,
             sums: None,
@@ -83,8 +92,10 @@ impl Journal {
     /// Continues in the new file beside the target.
     fn switch(&mut self) -> Result<(), CliError> {
         self.path = beside(&self.target, beside::NEW);
-        let file = sink::claim(self.flag, &self.path, OpenOptions::new().read(true))?;
+        let (file, created) = sink::claim(self.flag, &self.path, OpenOptions::new().read(true))?;
         self.claimed = Some(mem::replace(&mut self.file, file));
+        self.created.keep();
+        self.created = created;
         Ok(())
     }
 
@@ -102,18 +113,21 @@ impl Journal {
             self.switch()?;
         }
         self.is_begun = true;
+        self.created.keep();
         self.try_begin(columns, metadata)
             .map_err(|source| failed(self.flag, &self.path, source))
     }
 
     fn try_begin(&mut self, columns: &Columns, metadata: &Map<String, Value>) -> io::Result<()> {
-        self.file.set_len(0)?;
-        self.file.rewind()?;
-        let mut text = serde_json::to_string_pretty(metadata)?;
-        text.push('\n');
-        replace(&beside(&self.path, ".meta.json"), text.as_bytes())?;
-        beside::remove(&beside(&self.path, ".counts"))?;
-        self.sums = Some(File::create(beside(&self.path, ".sums"))?);
+        if self.is_kept {
+            self.file.set_len(0)?;
+            self.file.rewind()?;
+            let mut text = serde_json::to_string_pretty(metadata)?;
+            text.push('\n');
+            replace(&beside(&self.path, ".meta.json"), text.as_bytes())?;
+            beside::remove(&beside(&self.path, ".counts"))?;
+            self.sums = Some(File::create(beside(&self.path, ".sums"))?);
+        }
         self.file.write_all(&columns.header())
     }
 
@@ -188,7 +202,7 @@ impl Journal {
             sums.write_all(text.as_bytes())?;
         }
         self.file.write_all(lines)?;
-        match counts {
+        match counts.filter(|_| self.is_kept) {
             Some(counts) if self.saved.elapsed() >= self.patience => {
                 let begun = Instant::now();
                 save(&beside(&self.path, ".counts"), members, counts)?;
@@ -211,7 +225,7 @@ impl Journal {
     }
 
     fn try_finish(self, members: u64, counts: Option<&Counts>) -> io::Result<()> {
-        if let Some(counts) = counts {
+        if let Some(counts) = counts.filter(|_| self.is_kept) {
             save(&beside(&self.path, ".counts"), members, counts)?;
         }
         if self.claimed.is_none() {
@@ -224,8 +238,7 @@ impl Journal {
 
     /// Removes the file of rows if this run began it. Rows of an earlier run stay.
     pub fn abandon(self) {
-        let is_file = self.file.metadata().is_ok_and(|it| it.is_file());
-        if self.is_begun && is_file {
+        if self.is_begun && self.is_kept {
             drop((self.file, self.sums));
             // The error that ended the run is reported, not that of a file which stays behind.
             let _ = beside::discard(&self.path);

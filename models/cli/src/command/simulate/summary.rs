@@ -11,7 +11,7 @@ use dalembert_driver::{Ending, Settings};
 
 use super::Finished;
 use crate::names;
-use crate::outcome;
+use crate::{outcome, scalar};
 
 /// Remedy for a run whose impacts are not confirmed.
 const SHORTER_STEPS: &str = "a smaller --tol, an earlier end, or --max-step H for shorter steps of the run and of its references";
@@ -58,8 +58,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
 pub fn ended(description: &Description, ending: &Ending) -> String {
     let Ending { outcome, t, .. } = ending;
     format!(
-        "{} at t = {t}{}",
+        "{} at t = {}{}",
         outcome.kind(),
+        scalar::full(*t),
         details(description, outcome)
     )
 }
