@@ -295,7 +295,7 @@ static ACCUMULATING: [Accumulating; 10] = [
         ),
         start: &[0.5, 0.0, 1.0, 0.125],
         right: 10.0,
-        bound: 5e-7,
+        bound: 1e-11,
         grows: false,
     },
     Accumulating {
@@ -326,7 +326,7 @@ static ACCUMULATING: [Accumulating; 10] = [
         ),
         start: &[0.8, 0.0, 1.0, 0.25],
         right: 6.0,
-        bound: 5e-7,
+        bound: 3e-8,
         grows: false,
     },
     // On a slope along which the motion drifts, and in a cycle of three.
@@ -348,7 +348,7 @@ static ACCUMULATING: [Accumulating; 10] = [
         ),
         start: &[1.0 / 3.0 + 0.5, 0.0, 1.0, 0.25, 0.5],
         right: 1.0 + 2.0 * 1.75 / 0.5,
-        bound: 5e-7,
+        bound: 3e-8,
         grows: false,
     },
 ];

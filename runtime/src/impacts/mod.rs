@@ -30,6 +30,7 @@ mod sizes;
 mod sliding;
 mod strike;
 mod tangency;
+mod thrown;
 mod told;
 mod touch;
 mod watch;

@@ -11,7 +11,7 @@ use super::{documentation_length, entry_length, index, labelled};
 use crate::diagnostics::{Diagnostics, Location};
 
 const FORM: &str = "name: slow -> fast when x >= 0 when y > 0 => LAW;";
-/// What stands before the arrow.
+/// Description of the word before the arrow, for messages.
 const LEFT: &str = "the mode that is left";
 
 /// The transitions as tokens, families written out.
