@@ -92,7 +92,7 @@ fn check(model: &Model, law: Option<Law>, q: [f64; 2], qdot: [f64; 2]) {
 }
 
 /// Numbers of random starts of the ordinary and of the nightly tests.
-const STARTS: [u32; 2] = [8, 40];
+const STARTS: [u32; 2] = [4, 40];
 
 fn beads_meet_the_wall(starts: u32) {
     let bead = shipped("holonomic_bead_on_ellipses").model();

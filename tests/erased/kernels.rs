@@ -11,10 +11,9 @@ use dalembert::variations::Dual;
 use dalembert_codegen::spec::{Declaration, STEPS};
 use dalembert_codegen::tables::FormOf;
 use dalembert_codegen::{compile_modes, compile_spec, read};
+use dalembert_erased::{Compiled, compared};
 use dalembert_tests::sampling::Random;
 use wide::f64x8;
-
-use super::models::{Compiled, compared};
 
 /// Number of points at which each kernel over doubles is evaluated.
 const POINTS: usize = 1000;

@@ -3,11 +3,10 @@
 
 mod courses;
 mod kernels;
-mod models;
 
 use dalembert::erased::{Bounded, Erased, Form};
 use dalembert::{Instance, System};
-use models::{Compiled, compared};
+use dalembert_erased::{Compiled, compared};
 
 fn assert_same_tables(emitted: &Form, loaded: &Form) {
     let name = emitted.documentation.description.name;
@@ -49,4 +48,13 @@ fn a_form_needs_room_for_its_vectors() {
     assert_eq!(chain.description().name, "chain4");
     let zeros: Bounded<f64, 16> = chain.zero_vector();
     assert_eq!(zeros.as_ref(), [0.0; 4]);
+}
+
+#[cfg(feature = "every_model")]
+#[test]
+fn every_shipped_model_is_compared() {
+    let compared: Vec<&str> = compared().iter().map(|it| it.description.name).collect();
+    for (name, _) in dalembert_command::TEXTS {
+        assert!(compared.contains(name), "{name}");
+    }
 }

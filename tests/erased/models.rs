@@ -111,15 +111,3 @@ pub fn compared() -> &'static [Compiled] {
         models
     })
 }
-
-#[cfg(feature = "every_model")]
-#[test]
-fn every_shipped_model_is_compared() {
-    let compared: Vec<&str> = self::compared()
-        .iter()
-        .map(|it| it.description.name)
-        .collect();
-    for (name, _) in dalembert_command::TEXTS {
-        assert!(compared.contains(name), "{name}");
-    }
-}

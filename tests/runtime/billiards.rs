@@ -3,8 +3,8 @@
 
 use dalembert::math::larger;
 use dalembert::{Event, Impacts, Observer, Outcome};
-use dalembert_tests::gap;
-use dalembert_tests::particle::*;
+use dalembert_stability::gap;
+use dalembert_stability::particle::*;
 
 /// The distance between a point of mass 1 at `u` and a block of mass `M` at `v / sqrt(M)`, where `ROOT = sqrt(M)`. The
 /// metric is the identity in `u` and `v`.

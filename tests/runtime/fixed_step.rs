@@ -8,8 +8,8 @@ use dalembert::{
     Counters, Fault, Gauss4, Gauss6, Law, Observer, Outcome, Rk4, Segment, Simulation, Stepper,
     System, Tolerance,
 };
+use dalembert_stability::particle::{FLOOR, Log, Particle, at, run_with};
 use dalembert_tests::line::{Line, Plane, soliton, soliton_at};
-use dalembert_tests::particle::{FLOOR, Log, Particle, at, run_with};
 
 fn tolerance() -> Tolerance {
     Tolerance::new(1e-10).unwrap()

@@ -3,8 +3,8 @@
 
 use dalembert::math::larger;
 use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
-use dalembert_tests::gap;
-use dalembert_tests::particle::*;
+use dalembert_stability::gap;
+use dalembert_stability::particle::*;
 
 const U: f64 = f64::EPSILON / 2.0;
 

@@ -2,8 +2,8 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
-use dalembert_tests::gap;
-use dalembert_tests::particle::*;
+use dalembert_stability::gap;
+use dalembert_stability::particle::*;
 
 /// The gap `cos(x)`, which falls through 0 at `x = pi/2 + 2 pi n`.
 const WAVE: Gap = gap!(c | x, y | Numbers::cos(x), [-x.sin(), 0.0]);

@@ -10,6 +10,7 @@ mod starts;
 use dalembert::Outcome;
 use dalembert::math::larger;
 use dalembert_driver::{Form, Integrator};
+use dalembert_tests::parallel;
 use dalembert_tests::sampling::{Random, asked};
 
 use runs::{Course, IMPACTS, Way, apart, certified, error, run, state_at};
@@ -36,6 +37,16 @@ struct Tally {
     impacts: u64,
     certified: u64,
     wrong: Vec<String>,
+}
+
+impl Tally {
+    fn add(&mut self, other: Self) {
+        self.starts += other.starts;
+        self.runs += other.runs;
+        self.impacts += other.impacts;
+        self.certified += other.certified;
+        self.wrong.extend(other.wrong);
+    }
 }
 
 /// Integrators of the reference runs.
@@ -242,26 +253,34 @@ fn compare(case: &Case, [adaptive, fixed]: [&[f64]; 2], tally: &mut Tally) -> bo
 const DRAWS: u64 = 200;
 
 /// Compares the declared start and `count` drawn starts of every model.
-fn compare_all(count: u64, seed: u64, tolerances: [&[f64]; 2]) {
+/// Compares the declared start of a model and so many drawn ones.
+fn compare_starts(shipped: &Shipped, count: u64, seed: u64, tolerances: [&[f64]; 2]) -> Tally {
     let mut tally = Tally::default();
+    assert!(
+        compare(&shipped.declared(), tolerances, &mut tally),
+        "{}",
+        shipped.name
+    );
+    for number in 0..count {
+        let mut random = Random::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
+        let mut draws = (0..DRAWS).map(|_| shipped.drawn(number, &mut random));
+        let is_found = draws.any(|case| compare(&case, tolerances, &mut tally));
+        assert!(is_found, "{}: no start was accepted", shipped.name);
+    }
+    println!("{}: {} impacts", shipped.name, tally.impacts);
+    tally
+}
+
+fn compare_all(count: u64, seed: u64, tolerances: [&[f64]; 2]) {
     let only = std::env::var("SEQUENCES_MODEL").ok();
-    for shipped in Shipped::with_surfaces() {
-        if only.as_ref().is_some_and(|name| name != shipped.name) {
-            continue;
-        }
-        let before = tally.impacts;
-        assert!(
-            compare(&shipped.declared(), tolerances, &mut tally),
-            "{}",
-            shipped.name
-        );
-        for number in 0..count {
-            let mut random = Random::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
-            let mut draws = (0..DRAWS).map(|_| shipped.drawn(number, &mut random));
-            let is_found = draws.any(|case| compare(&case, tolerances, &mut tally));
-            assert!(is_found, "{}: no start was accepted", shipped.name);
-        }
-        println!("{}: {} impacts", shipped.name, tally.impacts - before);
+    let is_asked = |shipped: &Shipped| only.as_ref().is_none_or(|name| name == shipped.name);
+    let models: Vec<Shipped> = Shipped::with_surfaces().filter(is_asked).collect();
+    let tallies = parallel::each(&models, |shipped| {
+        compare_starts(shipped, count, seed, tolerances)
+    });
+    let mut tally = Tally::default();
+    for of_model in tallies {
+        tally.add(of_model);
     }
     println!(
         "{} starts, {} runs, {} impacts, {} of them certified",

@@ -82,8 +82,8 @@ fn check(name: &str, until: f64) {
 #[test]
 fn constraints_hold_to_rounding_at_the_ends_of_steps() {
     // These include affine and time-dependent constraints, forces, velocity-linear terms and variable metrics.
-    check("chaplygin_sleigh", 1000.0);
-    check("rolling_disk", 1000.0);
+    check("chaplygin_sleigh", 100.0);
+    check("rolling_disk", 100.0);
     check("ball_on_rotating_table", 5.0);
     check("rolling_ball_euler", 5.0);
     // The motion of the affine sleigh blows up soon after this time.

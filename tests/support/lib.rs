@@ -22,7 +22,7 @@ pub mod line;
 pub mod linear;
 pub mod numeric;
 pub mod obstruction;
-pub mod particle;
+pub mod parallel;
 pub mod reference;
 pub mod sampling;
 pub mod symbolic;

@@ -4,7 +4,7 @@
 //! The binary of this package is the `dalembert` command with these cases as the subcommand `stability`.
 //!
 //! The models of cases are texts that are loaded on first use ([`text`]), except for one that runs in extended precision
-//! and for systems written by hand ([`by_hand`]).
+//! and for systems written by hand ([`by_hand`], [`particle`]).
 //!
 //! To add a case, copy a [`Case`] and its function in the file of its section. Case numbers are never reused. The
 //! correct result is a closed form, an exact count, a class of outcome, or a number that can be computed again with
@@ -30,6 +30,7 @@ mod input;
 mod laws;
 mod location;
 mod long;
+pub mod particle;
 mod scaling;
 mod structure;
 mod switches;

@@ -54,10 +54,10 @@ pub const CASES: &[Case] = &[
         right: "x = 0 for ever",
         bound: "`done`, x = 0 at ten times the Zeno time",
         run: Run::Steps(|setting, report| {
-            // With forced steps, restitution 0.99 takes two million steps; see `B01c`.
+            // With forced steps, restitution 0.99 takes two million steps, most of them held; see `B01c`.
             let is_forced = setting.max_step.is_some();
             let restitutions = if is_forced {
-                &[0.1, 0.5, 0.9][..]
+                &[0.1, 0.5][..]
             } else {
                 &[0.1, 0.5, 0.9, 0.99]
             };
@@ -67,10 +67,10 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "B01c",
-        title: "the same with restitution 0.99, in forced steps too",
+        title: "the same with restitution 0.9 and 0.99, in forced steps too",
         right: "x = 0 for ever",
         bound: "`done`, x = 0 at ten times the Zeno time",
-        run: Run::Steps(|setting, report| after_accumulation(setting, report, &[0.99])),
+        run: Run::Steps(|setting, report| after_accumulation(setting, report, &[0.9, 0.99])),
         ..Case::NIGHTLY
     },
     Case {
