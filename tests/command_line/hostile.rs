@@ -349,6 +349,7 @@ fn a_stream_that_closes_early_needs_no_message() {
         }
     }
     for line in [
+        "--help",
         "list",
         "simulate bead --json -",
         "simulate bead --csv -",
@@ -373,6 +374,33 @@ fn a_stream_that_closes_early_needs_no_message() {
             "{line}: {}",
             String::from_utf8_lossy(&errors)
         );
+    }
+}
+
+#[test]
+fn output_that_finds_no_room_is_refused() {
+    struct Full;
+    impl std::io::Write for Full {
+        fn write(&mut self, _bytes: &[u8]) -> std::io::Result<usize> {
+            Err(std::io::ErrorKind::StorageFull.into())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    for line in ["--help", "--version", "simulate --help", "list"] {
+        let mut errors = Vec::new();
+        let mut streams = Streams {
+            input: &mut "".as_bytes(),
+            output: &mut Full,
+            errors: &mut errors,
+            terminal: false,
+        };
+        let args = std::iter::once("dalembert").chain(line.split_whitespace());
+        let exit = run_with(args, systems::entries(), &mut streams);
+        let errors = String::from_utf8_lossy(&errors);
+        assert_eq!(exit, Exit::Refused, "{line}: {errors}");
+        assert!(errors.contains("standard streams"), "{line}: {errors}");
     }
 }
 

@@ -203,6 +203,16 @@ fn coordinates_that_the_tolerance_exceeds_are_told() {
         &["simulate", "-", "--set", "s=1e-6", "--tol", "1e-15"],
     );
     assert!(fine.errors.is_empty(), "{}", fine.errors);
+    // Every step ends at the floor, and the hops are as high as 1/2.
+    let hops = "
+        Hops {
+            coordinates { x; }
+            lagrangian = dot(x)^2/2 - x;
+            impacts { floor: x >= 0 => newton(0.99); }
+            initial { dot(x) = 1; until = 100; }
+        }";
+    let hops = run_on(hops, &["simulate", "-"]);
+    assert!(hops.errors.is_empty(), "{}", hops.errors);
 }
 
 /// Work of forces and losses in impacts are no errors of the energy.

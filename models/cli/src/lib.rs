@@ -116,12 +116,11 @@ impl Catalogue {
     where
         A: Into<OsString> + Clone,
     {
-        let mut line = match CommandLine::try_parse_from(args) {
-            Ok(line) => line,
-            Err(error) => return explain(error, streams),
+        let done = match CommandLine::try_parse_from(args) {
+            Ok(mut line) => with_files(&mut line, self, streams),
+            Err(error) => explain(error, streams),
         };
-        let done = with_files(&mut line, self, streams)
-            .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
+        let done = done.and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
         done.unwrap_or_else(|error| match error {
             // A reader that closes its end early, such as `head`, needs no message.
             CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
@@ -179,18 +178,18 @@ fn dispatch(
 }
 
 /// Writes help to the standard output; any other error of `clap` is a refusal.
-fn explain(mut error: clap::Error, streams: &mut Streams<'_>) -> Exit {
+fn explain(mut error: clap::Error, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     if error.kind() == ErrorKind::UnknownArgument {
         // Removes the tip to pass an unknown flag as a value, because no argument takes such a value.
         error.remove(ContextKind::Suggested);
     }
     let text = error.to_string();
-    // If a standard stream fails here, no stream is left for a report.
     if error.use_stderr() {
+        // If the standard error fails, no stream is left for a report.
         let _ = write!(streams.errors, "{text}");
-        Exit::Refused
+        Ok(Exit::Refused)
     } else {
-        let _ = write!(streams.output, "{text}");
-        Exit::Reached
+        write!(streams.output, "{text}")?;
+        Ok(Exit::Reached)
     }
 }

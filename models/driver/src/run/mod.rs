@@ -188,7 +188,7 @@ pub(crate) fn simulate<M: Model>(
         balance: balance.flatten(),
         reach: wants_warnings.then_some(0.0),
     };
-    bridge.follow(&state);
+    bridge.follow(&model.position(&state));
     let first = bridge.point(0.0, &state);
     let solved = solve(model, &state, settings, &mut bridge)?;
     let last = bridge.point(solved.run.t, &solved.run.state);
@@ -365,15 +365,35 @@ impl<M: Model, R: Reading<M::State>> Bridge<'_, M, R> {
         self.integrals.put(self.reading.point(t, state))
     }
 
-    /// Takes note of the sizes of the coordinates.
-    fn follow(&mut self, state: &M::State) {
+    /// Takes note of the sizes of coordinates.
+    fn follow(&mut self, q: &M::Vector) {
         if let Some(reach) = &mut self.reach {
-            let q = self.model.position(state);
-            *reach = q
-                .as_slice()
-                .iter()
-                .fold(*reach, |most, q| larger(most, q.abs()));
+            let sizes = q.as_slice().iter().map(|q| q.abs());
+            *reach = sizes.fold(*reach, larger);
         }
+    }
+
+    /// Takes note of the sizes of the coordinates at the end of a segment and, by the cubic through both ends, in its middle:
+    /// the ends of a hop are at the floor.
+    fn follow_segment(&mut self, segment: &Segment<'_, M::State>) {
+        if self.reach.is_none() {
+            return;
+        }
+        let (from, to) = (segment.start(), segment.end());
+        let [start, end] = [from, to].map(|state| self.model.position(state));
+        self.follow(&end);
+        let rates = [(segment.t_start(), from), (segment.t_end(), to)]
+            .map(|(t, state)| self.model.velocity(t, state));
+        let [Ok(leaving), Ok(arriving)] = rates else {
+            return;
+        };
+        let eighth = 0.125 * (segment.t_end() - segment.t_start());
+        let mut middle = end;
+        for (i, middle) in middle.as_mut_slice().iter_mut().enumerate() {
+            let bend = leaving.as_slice()[i] - arriving.as_slice()[i];
+            *middle = 0.5 * (start.as_slice()[i] + *middle) + eighth * bend;
+        }
+        self.follow(&middle);
     }
 
     fn go_on(&self) -> ControlFlow<()> {
@@ -389,8 +409,7 @@ impl<M: Model, R: Reading<M::State>> Observer<M> for Bridge<'_, M, R> {
         if let Some(balance) = &mut self.balance {
             balance.follow(self.model, segment);
         }
-        let end = *segment.end();
-        self.follow(&end);
+        self.follow_segment(segment);
         self.watch.step(&SegmentPiece {
             description: self.model.description(),
             reading: &self.reading,
