@@ -413,6 +413,32 @@ fn a_motion_that_leaves_a_wall_like_a_power_of_time_is_not_held() {
     }
 }
 
+/// The body rises from the bottom of a circle like the fifth power of time, and hits the circle at 0.36. At the end of a long step
+/// it is pressed.
+#[test]
+fn a_long_step_from_rest_hides_no_impact() {
+    let circle = Text::new(
+        "Circle {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2;
+            forces { pull: -8*t/5*d(x) + (x^2 - x)*d(y); }
+            impacts { wall: 1 - x^2 - (y - 1)^2 >= 0 => newton(0.5); }
+        }",
+    );
+    let model = circle.model();
+    let mut first: Vec<f64> = Vec::new();
+    for until in [1.0, 2.7, 7.5] {
+        for integrator in [Integrator::Taylor, Integrator::Dop853, Integrator::Dopri5] {
+            let course = Course::new(&model, &[0.0; 2], &[0.0; 2], until).tol(1e-12);
+            let end = course.resting().run(Setting::free(integrator));
+            first.push(end.hits.first().map_or(until, |hit| hit.t));
+        }
+    }
+    assert!(first[0] < 0.4, "{first:?}");
+    let is_near = first.iter().all(|t| (t - first[0]).abs() < 1e-8);
+    assert!(is_near, "{first:?}");
+}
+
 /// Two bodies that forces press to the ground, and a third one that touches them. All are at 0, so that their coordinates
 /// show no size of rounding errors: those of the forces, which cancel, must not move them.
 const STACK: &str = "

@@ -6,6 +6,7 @@ use super::tangency::{crosses_at_rest, is_accelerated, sinks_by_its_second_rate}
 use super::watch::Watch;
 use crate::contract::Impacting;
 use crate::effects::StepView;
+use crate::events::locate::Start;
 use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
@@ -81,6 +82,26 @@ impl<Sys: Impacting> Watch<Sys> {
             Change::Sinks(_) => Ok(None),
             Change::None => Ok(Some(Departure::None)),
         }
+    }
+
+    /// The start of the search behind the departure from a passable surface on which the motion is at rest, and which has acted.
+    /// `None` if the motion stays within the rounding of the gap, or leaves the surface when the search ends.
+    pub(super) fn way_on<Step: Stepper<Sys>>(
+        &self,
+        surface: usize,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Option<Start> {
+        let (from, above) = match self.first_change(surface, step) {
+            Change::Rises(part) => (part, true),
+            Change::Sinks(part) => (part, false),
+            Change::None => return None,
+        };
+        let next = Start {
+            above,
+            ..Start::behind(from, start.until)
+        };
+        (from < start.until).then_some(next)
     }
 
     /// True if a gap that is negative at `part` is so by the motion, and not by the error of the integrator.

@@ -39,6 +39,8 @@ pub(super) struct Hits<G: StateVector> {
     due: PerSurface<bool, G>,
     /// True for surfaces that had an impact at this time.
     struck: PerSurface<bool, G>,
+    /// True for surfaces at a place to which no smooth motion led.
+    placed: PerSurface<bool, G>,
 }
 
 impl<G: StateVector> Hits<G> {
@@ -50,6 +52,7 @@ impl<G: StateVector> Hits<G> {
             still: PerSurface::all(like, Still::UpTo(0.0)),
             due: none,
             struck: none,
+            placed: none,
         }
     }
 
@@ -165,9 +168,19 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// Replaces the surfaces at hand; settled ones stay settled.
+    /// True if the surface had an impact at this time.
+    pub(super) fn was_struck(&self, surface: usize) -> bool {
+        self.struck[surface]
+    }
+
+    /// True if the surface is at hand where no smooth motion led, and not settled.
+    pub(super) fn is_placed(&self, surface: usize) -> bool {
+        self.at_hand[surface] && self.placed[surface] && self.still[surface] != Still::Done
+    }
+
+    /// Replaces the surfaces at hand by those at a place to which no smooth motion led; settled ones stay settled.
     pub(super) fn replace(&mut self, at_hand: PerSurface<bool, G>) {
-        self.at_hand = at_hand;
+        (self.at_hand, self.placed) = (at_hand, at_hand);
         for still in self.still.iter_mut() {
             if *still == Still::Fallen {
                 *still = Still::UpTo(0.0);

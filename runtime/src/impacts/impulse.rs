@@ -37,7 +37,8 @@ pub const IMPACT_BUDGET: u64 = 10_000_000;
 ///
 /// A surface with the law [`Law::Reset`] has no forbidden side. It acts whenever its gap falls through 0 from above;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
-/// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
+/// reset of positions, a surface at hand acts if it is approached, or once the motion at rest on it is pressed into it. Such
+/// a surface does not hold the motion.
 ///
 /// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other
 /// surfaces at hand act.
@@ -141,9 +142,16 @@ impl<Sys: Impacting> Impacts<Sys> {
             return Err(Outcome::Zeno { t, surface });
         }
         let is_held = self.resting.held().is_held(surface);
-        if law == Law::Transition && !is_held && !self.accumulation.has_passed_at(surface, t) {
+        let is_waiting = self.watch.is_waiting(surface);
+        let enters = law == Law::Transition && !is_held;
+        let is_entered = enters && !self.accumulation.has_passed_at(surface, t);
+        if is_entered || is_waiting {
             // It begins to count where the motion is on it, perhaps without a gap rate.
-            self.resting.count(surface, t)?;
+            match is_waiting {
+                true if self.resting.are_endless(t) => return Err(Outcome::Zeno { t, surface }),
+                true => {}
+                false => self.resting.count(surface, t)?,
+            }
             self.watch.cut_at(surface, 0.0, step.length());
             self.watch.is_shown_by_values[surface] = self.watch.rates.as_slice()[surface] <= 0.0;
             return Ok(Some(0.0));
@@ -160,6 +168,7 @@ impl<Sys: Impacting> Impacts<Sys> {
             (false, None) => return Err(Outcome::Contact { surface }),
             (false, Some(t)) => return Err(Outcome::Zeno { t, surface }),
             (true, Some(t)) => self.resting.note_accumulation(surface, t),
+            (true, None) if enters => return Err(self.trapped(surface, t)),
             (true, None) => {}
         }
         self.resting.press(surface, t)
@@ -219,7 +228,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                 false => before = middle,
             }
         }
-        if self.rises(surface, after, step) {
+        if self.moves_off(surface, after, step) {
             return Ok(None);
         }
         // Other surfaces were searched up to the hit only. One that presses before holds the motion together with this one.
@@ -228,25 +237,31 @@ impl<Sys: Impacting> Impacts<Sys> {
         Ok(Some((surface, if is_met { 0.0 } else { after })))
     }
 
-    /// True if the gap of a surface that is touched at the start of the step rises up to this part as its second rates have it.
-    /// In balance they are 0.
-    fn rises<Step: Stepper<Sys>>(
+    /// True if the gap of a surface that is touched at the start of the step rises up to this part as its second rates have it, or
+    /// has risen and fallen again. In balance they are 0.
+    fn moves_off<Step: Stepper<Sys>>(
         &self,
         surface: usize,
         part: f64,
         step: &mut StepView<'_, Sys, Step>,
     ) -> bool {
-        let rate = |k: u32| {
-            let there = part * ((f64::from(k) + 0.5) / f64::from(RISES));
-            second_rate_at(surface, step, there).map_or(0.0, |second| second.max(0.0))
-        };
-        let mean = (0..RISES).map(rate).sum::<f64>() / f64::from(RISES);
+        let (mut rise, mut expected) = (0.0, 0.0);
+        for k in 0..RISES {
+            let place = (f64::from(k) + 0.5) / f64::from(RISES);
+            let second = second_rate_at(surface, step, part * place).unwrap_or(0.0);
+            rise += 0.5 * second.max(0.0);
+            expected += (1.0 - place) * second;
+        }
         let elapsed = part * step.length();
-        let rise = 0.5 * mean * elapsed * elapsed;
+        let scale = elapsed * elapsed / f64::from(RISES);
+        let (rise, expected) = (scale * rise, scale * expected);
         let gap = gap_at(surface, step, part);
         step.counters.event_evaluations += 1 + u64::from(RISES);
         let rounding = self.watch.rounding_at(surface, part, step);
-        gap > FLAT * rounding && gap > LEAST_SHARE * rise && gap < 4.0 * rise
+        let rises = gap > LEAST_SHARE * rise && gap < 4.0 * rise;
+        let is_expected = (gap - expected).abs() < 0.5 * expected.abs();
+        let has_fallen = gap < 0.0 && rise > FLAT * rounding && is_expected;
+        gap.abs() > FLAT * rounding && (rises || has_fallen)
     }
 
     /// True if the motion is behind a surface that counts at this part of the step, by more than rounding.
@@ -375,7 +390,8 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             // At rest on the surface: a force that grows from 0 presses.
             Err(Outcome::TangentialCrossing { surface })
                 if self.may_rest(surface)
-                    || self.law_of(step.system, surface) == Law::Transition =>
+                    || self.law_of(step.system, surface) == Law::Transition
+                    || self.watch.is_waiting(surface) =>
             {
                 self.press(surface, step)
             }

@@ -24,6 +24,9 @@ use crate::state::StateVector;
 /// ends, because no set of held surfaces seems to continue the motion.
 const CHANGES: u32 = 4;
 
+/// Number of resets of a motion at rest at one time beyond which they count as endless.
+const RESETS: u32 = 1000;
+
 /// Ratio to the kinetic energy below which the square of a gap rate counts as 0: the square of `2^-36`, as for impacts.
 const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
@@ -109,6 +112,11 @@ impl<G: StateVector> Resting<G> {
             return Err(Outcome::Contact { surface });
         }
         Ok(())
+    }
+
+    /// Counts a reset of a motion at rest. True if there are too many at one time.
+    pub(super) fn are_endless(&mut self, t: f64) -> bool {
+        self.changes.add(t) > RESETS
     }
 
     /// The earliest of a hit, the first release in a step, and `end`: where a held surface no longer counts.

@@ -101,7 +101,12 @@ impl<Sys: Impacting> Watch<Sys> {
                 }
             }
             let last_rate = last_rates.as_slice()[surface];
-            let found = self.first_hit(surface, step, glance, whole)?;
+            let found = match self.first_hit(surface, step, glance, whole) {
+                Err(pressed @ (Outcome::Contact { .. } | Outcome::TangentialCrossing { .. })) => {
+                    return Err(self.reset_before(surface, pressed, step, glance)?);
+                }
+                found => found?,
+            };
             if matches!(found, Found::Nothing) && self.has_fallen_unseen(surface, step, glance) {
                 return Err(Outcome::Contact { surface });
             }
@@ -140,6 +145,25 @@ impl<Sys: Impacting> Watch<Sys> {
             self.cut_behind((surface, Behind::Pole), part, step);
         }
         Ok(())
+    }
+
+    /// The pressure on a waiting surface after this one, if there is any: its reset may lead the motion off. Else the given pressure.
+    fn reset_before<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        pressed: Outcome,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &Glance<Sys::Gaps>,
+    ) -> Result<Outcome, Outcome> {
+        if self.is_waiting(surface) {
+            return Ok(pressed);
+        }
+        for other in surface + 1..self.parts.count() {
+            if self.is_waiting(other) {
+                self.first_hit(other, step, glance, None)?;
+            }
+        }
+        Ok(pressed)
     }
 
     /// True if a gap reaches 0 at the end of the step within the rounding of times, and does not stay there all along.
@@ -193,14 +217,20 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
-        // A touched passable surface has acted already: the motion leaves it upwards, or crosses it.
-        let crosses = self.is_passable(surface) && slope.is_some_and(|slope| slope <= 0.0);
+        // A touched passable surface has acted already, or waits: the motion leaves it upwards, or crosses it.
+        let crosses = self.lets_through(surface) && slope.is_some_and(|slope| slope <= 0.0);
         let mut start = Start {
             from: 0.0,
             above: gap >= 0.0 && !crosses,
             slope,
             until,
         };
+        if crosses && slope == Some(0.0) {
+            match self.way_on(surface, start, step) {
+                Some(next) => start = next,
+                None => return Ok(Found::Nothing),
+            }
+        }
         let ends = [gap, glance.gaps.as_slice()[surface]];
         // The motion behind another hit does not take place, and adds no rounding errors.
         let mut sizes = match until < 1.0 {

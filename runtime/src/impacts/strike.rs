@@ -1,6 +1,6 @@
 //! The impacts of one moment: rounds over the surfaces at hand, and the result of each law.
 
-use core::ops::ControlFlow;
+use core::ops::{ControlFlow, RangeInclusive};
 
 use super::accumulation::{Bounce, Ends};
 use super::corner::Recurrence;
@@ -24,6 +24,10 @@ use crate::state::StateVector;
 /// Ratio of the gap rates after and before an impact below which the rate after it counts as 0: `2^-36`, the rounding
 /// of a plastic impact in a metric of condition `1e4`.
 pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
+
+/// Ratios of the gap rates after and before a reset at which the rate after it counts as 0. A sum of numbers of one size that
+/// cancel is a rounding error, or 0; a smaller rate was set.
+const CANCELLED: RangeInclusive<f64> = f64::EPSILON / 16.0..=8.0 * f64::EPSILON;
 
 /// Result of an impact on a state.
 pub(super) struct Struck<Sys: Impacting> {
@@ -110,6 +114,10 @@ impl<Sys: Impacting> Impacts<Sys> {
             let mut next;
             (rates, next) = self.impact(strike, now, observer)?;
             if is_map {
+                let after = &mut rates.as_mut_slice()[surface];
+                if CANCELLED.contains(&(*after / rate).abs()) {
+                    *after = 0.0;
+                }
                 wave = Wave::none(&rates);
                 let course = (&mut hits, &mut passages);
                 self.follow_map(surface, (&arrived, &rates), course, now, observer)?;
@@ -255,7 +263,7 @@ impl<Sys: Impacting> Impacts<Sys> {
 
     /// The end of a motion between modes that lead to each other at the time `t`: an accumulation if they did so at short
     /// intervals before.
-    fn trapped(&self, surface: usize, t: f64) -> Outcome {
+    pub(super) fn trapped(&self, surface: usize, t: f64) -> Outcome {
         match self.accumulation.has_quickened(t) {
             true => Outcome::Zeno { t, surface },
             false => Outcome::Trapped { surface },

@@ -80,7 +80,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let is_at_hand = first == 0.0;
         // NOTE: if the gap of a surface at hand is negative on the whole step, the motion presses into the surface,
         // unless it passes through it. A constant sign therefore decides nothing here.
-        let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
+        let is_passed = self.lets_through(surface) && at(&self.rates) <= 0.0;
         if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
             return Told::Unclear(None);
         }
