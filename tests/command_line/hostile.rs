@@ -1,6 +1,8 @@
 //! Wrong input gives exit status 2, an empty standard output, and a message that names the flag and the accepted
 //! values. The program never panics.
 
+use std::io::ErrorKind;
+
 use super::folder::Folder;
 use super::*;
 
@@ -337,17 +339,21 @@ fn input_without_end_is_refused() {
     ]);
 }
 
+/// A stream whose writes fail.
+struct Failing(ErrorKind);
+
+impl std::io::Write for Failing {
+    fn write(&mut self, _bytes: &[u8]) -> std::io::Result<usize> {
+        Err(self.0.into())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 #[test]
 fn a_stream_that_closes_early_needs_no_message() {
-    struct Closed;
-    impl std::io::Write for Closed {
-        fn write(&mut self, _bytes: &[u8]) -> std::io::Result<usize> {
-            Err(std::io::ErrorKind::BrokenPipe.into())
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
     for line in [
         "--help",
         "list",
@@ -359,7 +365,7 @@ fn a_stream_that_closes_early_needs_no_message() {
         let mut errors = Vec::new();
         let mut streams = Streams {
             input: &mut "".as_bytes(),
-            output: &mut Closed,
+            output: &mut Failing(ErrorKind::BrokenPipe),
             errors: &mut errors,
             terminal: false,
         };
@@ -379,20 +385,11 @@ fn a_stream_that_closes_early_needs_no_message() {
 
 #[test]
 fn output_that_finds_no_room_is_refused() {
-    struct Full;
-    impl std::io::Write for Full {
-        fn write(&mut self, _bytes: &[u8]) -> std::io::Result<usize> {
-            Err(std::io::ErrorKind::StorageFull.into())
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
     for line in ["--help", "--version", "simulate --help", "list"] {
         let mut errors = Vec::new();
         let mut streams = Streams {
             input: &mut "".as_bytes(),
-            output: &mut Full,
+            output: &mut Failing(ErrorKind::StorageFull),
             errors: &mut errors,
             terminal: false,
         };

@@ -11,19 +11,12 @@ use dalembert::{
 };
 use nalgebra::SVector;
 
+pub use super::by_hand::Gap;
+
 /// A position, or a velocity.
 pub type Vector = SVector<f64, 2>;
 /// A position and a velocity.
 pub type State = SVector<f64, 4>;
-
-/// A surface: its gap and gradient at a point, and its gap along a part of the motion.
-#[derive(Clone, Copy)]
-pub struct Gap {
-    /// Gap and gradient at a point.
-    pub at: fn([f64; 2]) -> (f64, [f64; 2]),
-    /// The gap along a part of the motion.
-    pub along: fn([TaylorModel; 2]) -> TaylorModel,
-}
 
 /// A surface from its gap and the gradient of the gap. `c` makes constants: `gap!(c |x, y| c(1.0) - x, [-1.0, 0.0])`.
 #[macro_export]

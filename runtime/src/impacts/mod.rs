@@ -28,6 +28,7 @@ mod series;
 mod sides;
 mod sizes;
 mod sliding;
+mod standing;
 mod strike;
 mod tangency;
 mod thrown;

@@ -16,6 +16,7 @@ use super::place::Place;
 use super::quiet::quieten_at_start;
 use super::series::LastSeries;
 use super::sides::Behind;
+use super::standing::Standing;
 use super::told::Told;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
@@ -51,8 +52,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) gaps: Sys::Gaps,
     /// True for passable surfaces.
     passable: PerSurface<bool, Sys::Gaps>,
-    /// What touched surfaces do if the motion is pressed into them.
-    standing: PerSurface<Standing, Sys::Gaps>,
+    /// Roles of the surfaces if the motion is pressed into them.
+    pub(super) standing: PerSurface<Standing, Sys::Gaps>,
     /// Rates at the start of the step, if known; always known for surfaces at hand.
     pub(super) rates: Sys::Gaps,
     has_rates: bool,
@@ -104,17 +105,6 @@ pub(super) struct Watch<Sys: Impacting> {
     /// True if the stored gaps belong to an earlier time than the start of the next step, because the last steps were
     /// not tested.
     is_stale: bool,
-}
-
-/// What a surface does if the motion on it is pressed into it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Standing {
-    /// What its law says; nothing, if it is passable.
-    Usual,
-    /// It acts: the motion began on this passable surface, or was put there by a reset.
-    Waits,
-    /// Nothing: it is passable and has acted at this moment, and no reset has led off it since.
-    Acted,
 }
 
 /// Grazing test of a hit.
@@ -239,16 +229,6 @@ impl<Sys: Impacting> Watch<Sys> {
         self.passable[surface]
     }
 
-    /// True for a passable surface that acts if the motion is pressed into it.
-    pub(super) fn is_waiting(&self, surface: usize) -> bool {
-        self.standing[surface] == Standing::Waits
-    }
-
-    /// True for a passable surface that does not act if the motion is pressed into it.
-    pub(super) fn lets_through(&self, surface: usize) -> bool {
-        self.is_passable(surface) && !self.is_waiting(surface)
-    }
-
     /// The surfaces at hand at the first instant of a run.
     pub(super) fn begin(&mut self, now: &mut Moment<'_, Sys>) -> Result<Hits<Sys::Gaps>, Outcome> {
         (self.proposed, self.place) = (None, None);
@@ -280,14 +260,8 @@ impl<Sys: Impacting> Watch<Sys> {
         self.grazes.fill(Graze::None);
         self.bends = gaps.zeroed();
         (self.gaps, self.here) = (gaps, Some(gaps));
-        let at_hand = self.at_hand(&gaps, rates, now);
-        hits.replace(at_hand);
-        for surface in 0..gaps.count() {
-            match self.standing[surface] {
-                Standing::Acted if at_hand[surface] => hits.set_done(surface),
-                _ => self.standing[surface] = Standing::Usual,
-            }
-        }
+        hits.replace(self.at_hand(&gaps, rates, now));
+        self.forget_led_off(hits);
         Ok(())
     }
 
@@ -368,15 +342,7 @@ impl<Sys: Impacting> Watch<Sys> {
     ) -> Result<(), Outcome> {
         (self.rates, self.has_rates) = (rates, true);
         self.haven.forget();
-        for surface in (0..self.gaps.count()).filter(|surface| self.passable[*surface]) {
-            let is_struck = hits.is_at_hand(surface) && hits.was_struck(surface);
-            self.standing[surface] = match self.standing[surface] {
-                Standing::Acted => Standing::Acted,
-                _ if is_struck => Standing::Acted,
-                _ if hits.is_placed(surface) => Standing::Waits,
-                before => before,
-            };
-        }
+        self.note_standing(hits);
         let leads_on =
             |surface: usize| matches!(now.system.law(surface), Law::Reset | Law::Transition);
         if (0..self.gaps.count()).any(|s| hits.is_at_hand(s) && leads_on(s)) {
@@ -434,15 +400,6 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(is_near.then_some(late))
     }
 
-    /// Surfaces that are no longer touched do as usual.
-    fn forget_left(&mut self) {
-        for (surface, gap) in self.gaps.as_slice().iter().enumerate() {
-            if *gap != 0.0 {
-                self.standing[surface] = Standing::Usual;
-            }
-        }
-    }
-
     /// The surfaces hit at the cut of the step: those found there, and those whose gaps are 0 there within rounding.
     pub(super) fn hits(
         &mut self,
@@ -452,9 +409,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let mut hits = Hits::none(&self.gaps);
         self.here = None;
         if theta > 0.0 {
-            let has_acted = |standing: &&mut Standing| **standing == Standing::Acted;
-            let acted = self.standing.iter_mut().filter(has_acted);
-            acted.for_each(|standing| *standing = Standing::Usual);
+            self.forget_acted();
         }
         if self.proposed.is_none() {
             return Ok(hits);
